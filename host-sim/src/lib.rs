@@ -1,0 +1,2 @@
+//! host-sim: the desktop simulator around fuzzypilot's tick.
+pub mod recording;

@@ -1,0 +1,121 @@
+//! What one simulated run leaves behind, in plain `f64` and names: the only thing that pictures, the replay page
+//! and the metrics look at, so that none of them needs to know the controller.
+//!
+//! Frame: x forward/east, y left/north, counter-clockwise positive; metres, seconds, radians unless a name says
+//! degrees.
+
+use serde::Serialize;
+
+/// A circular obstacle of the world.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Disc {
+    /// Name shown beside it, for example `Obs4`.
+    pub name: String,
+    /// Centre, metres.
+    pub x: f64,
+    /// Centre, metres.
+    pub y: f64,
+    /// Radius, metres, positive.
+    pub radius: f64,
+}
+
+/// Mounting pose and reach of one range sensor, in the robot's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BeamView {
+    /// Metres forward of the robot's centre.
+    pub x: f64,
+    /// Metres left of the robot's centre.
+    pub y: f64,
+    /// Direction of the axis, radians, counter-clockwise from forward.
+    pub heading: f64,
+    /// Full opening angle, radians; 0 for a beam.
+    pub width: f64,
+    /// Largest range it reports, metres.
+    pub max_range: f64,
+}
+
+/// A rule table with names, as shown in the replay.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TableView {
+    /// Heading, for example `Table 7.2: deflection`.
+    pub title: String,
+    /// Name of the input along the rows.
+    pub row_input: String,
+    /// Name of the input along the columns.
+    pub col_input: String,
+    /// Row terms in order.
+    pub row_terms: Vec<String>,
+    /// Column terms in order.
+    pub col_terms: Vec<String>,
+    /// `cells[row][col]`: the consequent's term.
+    pub cells: Vec<Vec<String>>,
+}
+
+/// One rule that fired.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FiredView {
+    /// Index into [`Recording::tables`].
+    pub table: usize,
+    /// Row of the rule.
+    pub row: usize,
+    /// Column of the rule.
+    pub col: usize,
+    /// Activation degree, 0 to 1.
+    pub degree: f64,
+}
+
+/// One tick of the run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Frame {
+    /// Time at the tick, seconds.
+    pub t: f64,
+    /// True pose: x, y, heading (radians).
+    pub truth: [f64; 3],
+    /// Pose as the robot believes it.
+    pub believed: [f64; 3],
+    /// `follow`, `avoid` or `stop`.
+    pub mode: &'static str,
+    /// Why, in a word or two (`path end`, `side left`, …); may be empty.
+    pub note: &'static str,
+    /// Signed cross-track error of the true pose against the path, metres, left positive.
+    pub cross_track: f64,
+    /// Distance from the robot's rim to the nearest obstacle, metres; infinite in an empty world.
+    pub clearance: f64,
+    /// Commanded twist: metres per second, radians per second.
+    pub twist: [f64; 2],
+    /// Wheel speeds left, right, metres per second, as the plant has them.
+    pub wheels: [f64; 2],
+    /// One entry a sensor: the range in metres, or none when it saw nothing or was invalid.
+    pub ranges: Vec<Option<f64>>,
+    /// Obstacle that the avoider holds, as it estimates it in the world: x, y, radius.
+    pub estimate: Option<[f64; 3]>,
+    /// Fuzzy inputs and outputs of this tick, ready to print: name and value with unit.
+    pub signals: Vec<(&'static str, f64)>,
+    /// Rules that fired.
+    pub fired: Vec<FiredView>,
+}
+
+/// Everything about one run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Recording {
+    /// Scenario's name.
+    pub scenario: String,
+    /// Guidance law and variants, one line for a title.
+    pub variant: String,
+    /// Seed of the run's noise.
+    pub seed: u64,
+    /// Control period, seconds.
+    pub period: f64,
+    /// Robot's radius, metres.
+    pub robot_radius: f64,
+    /// Obstacles.
+    pub obstacles: Vec<Disc>,
+    /// Path as polylines, x, y in metres, dense enough to draw (one polyline a stretch without gaps).
+    pub path: Vec<Vec<[f64; 2]>>,
+    /// Sensors.
+    pub beams: Vec<BeamView>,
+    /// Rule tables of the controllers in use.
+    pub tables: Vec<TableView>,
+    /// The run, a frame a tick.
+    pub frames: Vec<Frame>,
+}

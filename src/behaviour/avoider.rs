@@ -1,0 +1,107 @@
+//! Coarse-grained avoidance: (s, θ) through two nested controllers to deflection and speed, then the check that no
+//! rule table can give.
+//!
+//! **Signs.** The tables speak the chapter's language: θ > 0 when the obstacle is on the left, Δθ > 0 clockwise. θ
+//! equals the obstacle's bearing; Δθ is minus the turn. That conversion happens here and nowhere else.
+//!
+//! **Side.** Table 7.3 alone turns right for every θ above about −45° (its column Z is R throughout). The text's rule
+//! "obstacle on the right: turn left" therefore evaluates the tables mirrored when the committed side is left: θ and
+//! Δθ change their sign, the rest stands.
+//!
+//! **Unfeasible region.** After the tables the deflection is raised until |θ + Δθ| > β/2 on the committed side, for
+//! the held obstacle and then for every other one near. It is also bounded: beyond β/2 + `overshoot` the tables would
+//! only lead away (column R, row M turns on until θ = 90°), so there the deflection ends, and the robot keeps along the
+//! edge of the region.
+
+use super::follower::rate_of;
+use crate::geometry::leg;
+use crate::params::{Avoider, Limits};
+use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Turn, Twist};
+use crate::units::{Angle, Metres, MetresPerSecond, saturate};
+use fixed::types::I16F16;
+
+/// Least angle by which a heading must clear the unfeasible region: keeps the strict ">" of the chapter after rounding.
+const EDGE: Angle = Angle::deg("0.5");
+
+/// β/2: half the angle that `obstacle`, grown by `grown`, subtends. A quarter turn when the robot is inside the grown
+/// circle.
+pub fn unfeasible_half_angle(obstacle: &Obstacle, grown: Metres) -> Angle {
+    let reach = obstacle.radius + grown;
+    let distance = obstacle.centre.norm();
+    if distance <= reach {
+        return Angle::QUARTER;
+    }
+    Angle::of(leg(distance, reach).bits(), reach.bits())
+}
+
+/// Desired motion while passing `held` on its committed side.
+pub fn avoid(
+    avoider: &Avoider,
+    limits: &Limits,
+    robot_radius: Metres,
+    sensed: &Sensed,
+    side: Turn,
+    held: &Obstacle,
+) -> Behaviour {
+    // In the mirrored frame the committed turn is always to the right: positive Δθ.
+    let mirror = |angle: Angle| match side {
+        Turn::Right => angle,
+        Turn::Left => -angle,
+    };
+    let grown = robot_radius + avoider.margin;
+    let theta = mirror(held.bearing());
+    let share = (i64::from(held.free_distance(robot_radius).bits()) << 16)
+        .checked_div(i64::from(avoider.range.bits()))
+        .map_or(0, saturate);
+    let (s, theta_degrees) = (I16F16::from_bits(share), theta.degrees());
+    let out = avoider
+        .tables
+        .tables()
+        .evaluate(s, theta_degrees, avoider.speed_input);
+
+    // Wanted bearing of the obstacle in the next tick, mirrored frame: θ + Δθ.
+    let half = unfeasible_half_angle(held, grown);
+    let fuzzy = theta + Angle::from_degrees(I16F16::from_num(out.deflection));
+    let edge = half + EDGE;
+    let wanted = if fuzzy.bits() < edge.bits() {
+        edge
+    } else {
+        fuzzy.limit(edge + avoider.overshoot)
+    };
+    // A right turn by wanted − θ, as a direction in the mirrored body frame (left positive there, too).
+    let mut direction = theta - wanted;
+    // Every push goes to the right, so as many passes as obstacles reach the end.
+    for _ in 0..sensed.obstacles.len() {
+        for other in &sensed.obstacles {
+            let near = other.free_distance(robot_radius) < avoider.range;
+            let bearing = mirror(other.bearing());
+            let half = unfeasible_half_angle(other, grown);
+            let off = bearing - direction;
+            if near && off.abs().bits() < half.bits() && blocks_sooner(other, held) {
+                direction = bearing - half - EDGE;
+            }
+        }
+    }
+    let turn = mirror(direction);
+    let speed = i64::from(limits.speed.bits()).wrapping_mul(out.speed.to_bits().into()) >> 14;
+    Behaviour {
+        twist: Twist {
+            linear: MetresPerSecond::from_bits(saturate(speed)),
+            angular: rate_of(turn, avoider.deflection_rate),
+        },
+        trace: RuleTrace {
+            controller: Controller::Coarse,
+            distance_input: s.to_bits(),
+            angle_input: theta_degrees.to_bits(),
+            speed_output: out.speed.to_bits(),
+            deflection_output: out.deflection.to_bits(),
+            rules: out.deflection_rules.fired(),
+            speed_rules: out.speed_rules.fired(),
+        },
+    }
+}
+
+/// An obstacle behind the held one does not matter yet.
+fn blocks_sooner(other: &Obstacle, held: &Obstacle) -> bool {
+    other.centre.norm() - other.radius < held.centre.norm() + held.radius
+}

@@ -1,0 +1,109 @@
+//! Points and poses in the plane, in fixed point. x forward (or east), y left (or north), counter-clockwise positive.
+
+use crate::units::{Angle, Metres, saturate};
+use fixed::types::I2F30;
+
+/// A point or a displacement, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Point {
+    /// Forward or east.
+    pub x: Metres,
+    /// Left or north.
+    pub y: Metres,
+}
+
+impl Point {
+    /// From coordinates.
+    pub const fn new(x: Metres, y: Metres) -> Self {
+        Self { x, y }
+    }
+
+    /// The point at `distance` in direction `heading`.
+    pub fn polar(distance: Metres, heading: Angle) -> Self {
+        let (cos, sin) = heading.cos_sin();
+        Self::new(times(distance, cos), times(distance, sin))
+    }
+
+    /// Length; exact to one step, saturates.
+    pub fn norm(self) -> Metres {
+        hypot(self.x, self.y)
+    }
+
+    /// Direction; 0 for the null vector.
+    pub fn direction(self) -> Angle {
+        Angle::of(self.x.bits(), self.y.bits())
+    }
+
+    /// Rotated counter-clockwise by `angle`.
+    pub fn rotated(self, angle: Angle) -> Self {
+        let (cos, sin) = angle.cos_sin();
+        Self::new(
+            times(self.x, cos) - times(self.y, sin),
+            times(self.x, sin) + times(self.y, cos),
+        )
+    }
+}
+
+impl core::ops::Add for Point {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y)
+    }
+}
+
+impl core::ops::Sub for Point {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y)
+    }
+}
+
+/// A place and a heading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Pose {
+    /// Place.
+    pub at: Point,
+    /// Heading, counter-clockwise from x.
+    pub heading: Angle,
+}
+
+impl Pose {
+    /// From parts.
+    pub const fn new(at: Point, heading: Angle) -> Self {
+        Self { at, heading }
+    }
+
+    /// A point of the world in this pose's frame.
+    pub fn to_body(self, world: Point) -> Point {
+        (world - self.at).rotated(-self.heading)
+    }
+
+    /// A point of this pose's frame in the world.
+    pub fn to_world(self, body: Point) -> Point {
+        self.at + body.rotated(self.heading)
+    }
+}
+
+/// Length times a cosine or sine, rounded to nearest.
+pub(crate) fn times(length: Metres, ratio: I2F30) -> Metres {
+    let wide = i64::from(length.bits()) * i64::from(ratio.to_bits());
+    Metres::from_bits(saturate((wide + (1 << 29)) >> 30))
+}
+
+/// √(a² + b²), rounded down to a step; saturates.
+pub(crate) fn hypot(a: Metres, b: Metres) -> Metres {
+    let square = |m: Metres| u64::from(m.bits().unsigned_abs()).pow(2);
+    from_square(square(a).saturating_add(square(b)))
+}
+
+/// √(c² − a²) where it exists, else 0.
+pub(crate) fn leg(c: Metres, a: Metres) -> Metres {
+    let square = |m: Metres| u64::from(m.bits().unsigned_abs()).pow(2);
+    from_square(square(c).saturating_sub(square(a)))
+}
+
+fn from_square(square: u64) -> Metres {
+    Metres::from_bits(saturate(square.isqrt() as i64))
+}

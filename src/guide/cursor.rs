@@ -1,0 +1,152 @@
+//! The cursor: how far along the path the robot is. It moves forward only, and looks at no more than [`LOOK`] pieces
+//! in one tick, so a path that crosses itself or comes back past itself cannot confuse it.
+
+use super::path::Path;
+use crate::geometry::{Point, Pose};
+use crate::units::{Angle, Metres, PerMetre, saturate};
+use fixed::types::I16F16;
+
+/// The most pieces that one tick looks at.
+pub const LOOK: usize = 8;
+
+/// Progress along a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cursor {
+    piece: usize,
+    along: Metres,
+    /// Path length before the current piece, this lap.
+    base: Metres,
+    laps: u16,
+}
+
+/// Where the cursor stands after a move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fix {
+    /// Nearest place and tangent within reach.
+    pub foot: Pose,
+    /// Signed cross-track error against that tangent, left positive.
+    pub cross_track: Metres,
+    /// Distance to the foot.
+    pub distance: Metres,
+    /// Path length up to the foot, this lap.
+    pub progress: Metres,
+    /// Path length left; the largest value on a closed path.
+    pub remaining: Metres,
+    /// Completed laps of a closed path.
+    pub laps: u16,
+}
+
+impl Cursor {
+    /// Moves on to the place of the path nearest to `place`, at most `reach` metres ahead and never back.
+    pub fn advance(&mut self, path: &Path<'_>, place: Point, reach: Metres) -> Fix {
+        let mut budget = reach.max(Metres::ZERO);
+        for _ in 0..LOOK {
+            let piece = path.piece(self.piece);
+            let length = piece.length();
+            let nearest = piece.project(place, self.along);
+            let along = nearest.min(self.along + budget).max(self.along);
+            let last = !path.is_closed() && self.piece.saturating_add(1) >= path.count();
+            if along < length || last {
+                self.along = along.min(length);
+                break;
+            }
+            budget = budget - (length - self.along);
+            self.along = Metres::ZERO;
+            self.piece = self.piece.saturating_add(1);
+            self.base = self.base + length;
+            if self.piece >= path.count() {
+                self.piece = 0;
+                self.base = Metres::ZERO;
+                self.laps = self.laps.saturating_add(1);
+            }
+        }
+        let (foot, _) = path.piece(self.piece).at(self.along);
+        let progress = self.base + self.along;
+        Fix {
+            foot,
+            cross_track: foot.to_body(place).y,
+            distance: (place - foot.at).norm(),
+            progress,
+            remaining: if path.is_closed() {
+                Metres::MAX
+            } else {
+                path.length() - progress
+            },
+            laps: self.laps,
+        }
+    }
+
+    /// Curvature `lead` metres ahead of the cursor.
+    pub fn curvature_ahead(&self, path: &Path<'_>, lead: Metres) -> PerMetre {
+        let mut left = self.along + lead.max(Metres::ZERO);
+        let mut index = self.piece;
+        for _ in 0..LOOK {
+            let piece = path.piece(index);
+            let length = piece.length();
+            let Some(next) = Self::next(path, index).filter(|_| left > length) else {
+                return piece.curvature();
+            };
+            left = left - length;
+            index = next;
+        }
+        path.piece(index).curvature()
+    }
+
+    /// Square of the speed that the path ahead allows, m²/s² with 32 fractional bits: what braking at `braking` m/s²
+    /// still brings down to √(`lateral`/κ) in every bend, to `corner` at every corner of more than 15° and to rest at
+    /// an open end. Looks over [`LOOK`] pieces.
+    pub fn speed_limit_squared(
+        &self,
+        path: &Path<'_>,
+        braking: I16F16,
+        lateral: I16F16,
+        corner: Metres,
+    ) -> u64 {
+        let square = |m: Metres| u64::from(m.bits().unsigned_abs()).pow(2);
+        let brake = |from: u64, distance: Metres| {
+            let gain = u64::from(braking.to_bits().unsigned_abs())
+                .saturating_mul(u64::from(distance.max(Metres::ZERO).bits().unsigned_abs()));
+            from.saturating_add(gain.saturating_mul(2))
+        };
+        let bend = |curvature: PerMetre| {
+            // (a·2^16 · 2^32) / (κ·2^16) = v²·2^32.
+            (u64::from(lateral.to_bits().unsigned_abs()) << 32)
+                .checked_div(u64::from(curvature.bits().unsigned_abs()))
+                .unwrap_or(u64::MAX)
+        };
+        let mut limit = u64::MAX;
+        let mut ahead = Metres::ZERO - self.along;
+        let mut index = self.piece;
+        for _ in 0..LOOK {
+            let piece = path.piece(index);
+            limit = limit.min(brake(bend(piece.curvature()), ahead));
+            ahead = ahead + piece.length();
+            let Some(next) = Self::next(path, index) else {
+                return limit.min(brake(0, ahead));
+            };
+            let jump = path.piece(next).start_heading() - piece.end_heading();
+            if jump.abs().bits() > Angle::deg("15").bits() {
+                limit = limit.min(brake(square(corner), ahead));
+            }
+            // Beyond this no robot that brakes at 0.1 m/s² or more from 1 m/s has anything to decide.
+            if ahead > Metres::lit("20") {
+                break;
+            }
+            index = next;
+        }
+        limit
+    }
+
+    fn next(path: &Path<'_>, index: usize) -> Option<usize> {
+        let next = index.saturating_add(1);
+        match next < path.count() {
+            true => Some(next),
+            false => path.is_closed().then_some(0),
+        }
+    }
+}
+
+/// √ of a square with 32 fractional bits, as a raw `I16F16`.
+pub(crate) fn root(squared: u64) -> i32 {
+    saturate(squared.isqrt() as i64)
+}

@@ -1,0 +1,78 @@
+//! The guidance laws: from pose and path to the direction to steer.
+//!
+//! * [`Law::Paper`]: the direction is the tangent ζ, as printed. φ = |ζ − ψ|.
+//! * [`Law::Guided`]: the direction is χ = ζ − χ∞ · (2/π) · atan(k · e), the vector field of Nelson, Barber, McLain
+//!   and Beard, *Vector field path following for miniature air vehicles*, IEEE T-RO 23(3), 2007, eq. 8 (for lines; used
+//!   with the signed cross-track error e of any path). Far from the path it points at it at χ∞, on it along it.
+//!
+//! Both act on the pose predicted over the command's latency.
+
+use super::cursor::{Cursor, root};
+use super::path::Path;
+use crate::geometry::{Point, Pose};
+use crate::params::{Follower, Law, Limits};
+use crate::signals::{Guidance, Twist};
+use crate::units::{Angle, Metres, MetresPerSecond, Seconds, saturate};
+
+/// Moves the cursor and answers where to head. `last` is the twist commanded in the tick before.
+pub fn guide(
+    follower: &Follower,
+    limits: &Limits,
+    timing: (Seconds, Seconds),
+    path: &Path<'_>,
+    cursor: &mut Cursor,
+    pose: Pose,
+    last: Twist,
+) -> Guidance {
+    let (period, latency) = timing;
+    let pose = predict(pose, last, latency);
+    let fix = cursor.advance(path, pose.at, follower.reach);
+    let toward = match follower.law {
+        Law::Paper => fix.foot.heading,
+        Law::Guided => fix.foot.heading - approach(follower, fix.cross_track),
+    };
+    // The command covers one period of travel: the curvature at its middle stands for it.
+    let lead = Metres::from_bits(last.linear.over(period).bits() >> 1);
+    let squared = cursor.speed_limit_squared(
+        path,
+        limits.acceleration,
+        follower.lateral_acceleration,
+        Metres::from_bits(follower.corner_speed.bits()),
+    );
+    // A last crawl, so that an end is reached and not only approached.
+    let crawl = Metres::from_bits(follower.arrival.bits());
+    let at_end = !path.is_closed() && fix.remaining <= crawl;
+    Guidance {
+        foot: fix.foot.at,
+        cross_track: fix.cross_track,
+        distance: fix.distance,
+        tangent: fix.foot.heading,
+        curvature: cursor.curvature_ahead(path, lead),
+        heading_error: toward - pose.heading,
+        progress: fix.progress,
+        remaining: fix.remaining,
+        laps: fix.laps,
+        speed_limit: MetresPerSecond::from_bits(root(squared)),
+        at_end,
+    }
+}
+
+/// χ∞ · (2/π) · atan(k · e).
+fn approach(follower: &Follower, cross_track: Metres) -> Angle {
+    let gained = saturate(
+        i64::from(follower.approach_gain.bits()).wrapping_mul(cross_track.bits().into()) >> 16,
+    );
+    let atan = Angle::of(1 << 16, gained);
+    // A quarter turn of atan, 2^30, is the whole of χ∞: the factor 2/π is in the binary angle already.
+    Angle::from_bits(saturate(
+        i64::from(follower.approach_angle.bits()).wrapping_mul(atan.bits().into()) >> 30,
+    ))
+}
+
+/// Pose after `time` of `twist`, along the mean heading.
+fn predict(pose: Pose, twist: Twist, time: Seconds) -> Pose {
+    let turned = twist.angular.over(time);
+    let middle = pose.heading + Angle::from_bits(turned.bits() >> 1);
+    let moved: Point = Point::polar(twist.linear.over(time), middle);
+    Pose::new(pose.at + moved, pose.heading + turned)
+}

@@ -1,0 +1,122 @@
+//! What the tick asks of the hardware. Implement these three traits for your board, or take `host-sim`'s.
+//!
+//! On the implementer's side of each trait: never block longer than a small share of the control period, never
+//! panic, and report trouble as data. On the caller's side: every method is called exactly once a tick, encoders
+//! first, ranges next, wheels last, and a failure in one never skips the others.
+
+use crate::units::{Metres, MetresPerSecond, Seconds};
+
+/// A wheel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Side {
+    /// The left wheel, at +y.
+    Left,
+    /// The right wheel, at −y.
+    Right,
+}
+
+/// Sets wheel speeds.
+///
+/// *Implementers*: take the speed over until the next call; forward positive for both wheels. The caller has limited
+/// it to the configured wheel speed. If no call comes within 200 ms, stop the wheels by yourself.
+///
+/// *Callers*: always set both wheels, also after an error on the first.
+pub trait WheelDrive {
+    /// What can go wrong; only its presence reaches the record.
+    type Error: core::fmt::Debug;
+
+    /// Commands one wheel.
+    fn set_speed(&mut self, wheel: Side, speed: MetresPerSecond) -> Result<(), Self::Error>;
+}
+
+/// Cumulative encoder counts of both wheels; they wrap, and only differences matter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct WheelCounts {
+    /// Left wheel, forward positive.
+    pub left: i32,
+    /// Right wheel, forward positive.
+    pub right: i32,
+}
+
+/// Reads the wheel encoders.
+///
+/// *Implementers*: both counts from as nearly the same moment as the hardware allows; sign-extend narrower counters
+/// so that wrap-around happens at 32 bits.
+///
+/// *Callers*: an `Err` means "unknown this tick", and the next good reading contains the travel in between.
+pub trait WheelEncoders {
+    /// Cumulative counts now, or why not.
+    fn counts(&mut self) -> Result<WheelCounts, Fault>;
+}
+
+/// Reads a ring of `N` range sensors.
+///
+/// *Implementers*: fill every entry in the mounting order of [`RingGeometry`](crate::params::RingGeometry). A sensor
+/// that has nothing new repeats its last reading with its age; it never repeats it as fresh.
+///
+/// *Callers*: treat [`Range::Invalid`] as unknown, never as free.
+pub trait RangeSensors<const N: usize> {
+    /// The latest reading of every sensor.
+    fn ranges(&mut self) -> [RangeReading; N];
+}
+
+/// One sensor's latest reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct RangeReading {
+    /// What it saw.
+    pub range: Range,
+    /// Time since it was measured.
+    pub age: Seconds,
+}
+
+impl RangeReading {
+    /// A reading of this very tick.
+    pub const fn fresh(range: Range) -> Self {
+        Self {
+            range,
+            age: Seconds::ZERO,
+        }
+    }
+}
+
+/// What a range sensor saw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Range {
+    /// An echo at this distance from the sensor.
+    Echo(Metres),
+    /// Nothing up to the sensor's largest range.
+    Clear,
+    /// No usable reading.
+    Invalid(Fault),
+}
+
+/// Why a reading is invalid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Fault {
+    /// Nothing was ever received.
+    NeverSeen,
+    /// No answer in time.
+    Timeout,
+    /// The bus or the pin reported an error.
+    Bus,
+    /// The value is outside what the sensor can measure.
+    OutOfRange,
+    /// The last reading is older than allowed.
+    Stale,
+}
+
+/// The three ports of a robot, owned together.
+#[derive(Clone, Debug)]
+pub struct Ports<D, E, R> {
+    /// Wheel drive.
+    pub drive: D,
+    /// Wheel encoders.
+    pub encoders: E,
+    /// Range sensors.
+    pub ranges: R,
+}

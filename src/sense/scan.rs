@@ -1,0 +1,185 @@
+//! One turn of the range ring: validity, segments, circles.
+
+use super::circle::fit_circle;
+use crate::geometry::Point;
+use crate::params::RingGeometry;
+use crate::ports::{Fault, Range, RangeReading};
+use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
+use crate::units::{Metres, MetresPerSecond};
+use heapless::Vec;
+
+/// Judges every reading, places the echoes in the body frame and makes circles of them.
+///
+/// An echo that is `age` old is drawn nearer by `speed · age`, the worst that the robot's own motion can have done.
+/// Neighbouring echoes closer than `ring.gap` belong together; a silent or invalid sensor in between separates.
+pub fn sense_ranges<const N: usize>(
+    ring: &RingGeometry<N>,
+    readings: &[RangeReading; N],
+    speed: MetresPerSecond,
+) -> Sensed {
+    let mut sensed = Sensed {
+        nearest: Metres::MAX,
+        ..Sensed::default()
+    };
+    let mut segments: Vec<Segment, 64> = Vec::new();
+    let mut open: Option<Segment> = None;
+    for (mount, reading) in ring.mounts.iter().zip(readings) {
+        let range = judge(ring, reading, speed);
+        if !matches!(range, Range::Invalid(_)) {
+            sensed.valid = sensed.valid.saturating_add(1);
+        }
+        let Range::Echo(distance) = range else {
+            segments.extend(open.take());
+            continue;
+        };
+        let point = mount.pose.to_world(Point::new(distance, Metres::ZERO));
+        sensed.nearest = sensed.nearest.min(point.norm());
+        let index = sensed.echoes.len();
+        let joins = sensed
+            .echoes
+            .last()
+            .is_some_and(|last| (point - *last).norm() <= ring.gap);
+        if sensed.echoes.push(point).is_err() {
+            break;
+        }
+        open = match open.take() {
+            Some(segment) if joins => Some(Segment {
+                count: segment.count.saturating_add(1),
+                ..segment
+            }),
+            finished => {
+                segments.extend(finished);
+                Some(Segment {
+                    start: index,
+                    count: 1,
+                })
+            }
+        };
+    }
+    segments.extend(open);
+    if ring.closed {
+        join_ends(ring, readings, &mut sensed, &mut segments);
+    }
+    for segment in &segments {
+        let end = segment.start.saturating_add(segment.count);
+        if let Some(points) = sensed.echoes.get(segment.start..end) {
+            insert(&mut sensed.obstacles, circle_of(ring, points));
+        }
+    }
+    sensed
+}
+
+/// Consecutive echoes of one obstacle.
+#[derive(Clone, Copy)]
+struct Segment {
+    start: usize,
+    count: usize,
+}
+
+fn judge<const N: usize>(
+    ring: &RingGeometry<N>,
+    reading: &RangeReading,
+    speed: MetresPerSecond,
+) -> Range {
+    match reading.range {
+        Range::Invalid(fault) => Range::Invalid(fault),
+        _ if reading.age > ring.max_age => Range::Invalid(Fault::Stale),
+        Range::Echo(distance) if distance < Metres::ZERO => Range::Invalid(Fault::OutOfRange),
+        Range::Echo(distance) if distance > ring.max_range => Range::Clear,
+        Range::Echo(distance) => {
+            Range::Echo((distance - speed.abs().over(reading.age)).max(Metres::ZERO))
+        }
+        Range::Clear => Range::Clear,
+    }
+}
+
+/// In a closed ring the last segment may go on in the first: rotate the echoes so that it is one piece.
+fn join_ends<const N: usize>(
+    ring: &RingGeometry<N>,
+    readings: &[RangeReading; N],
+    sensed: &mut Sensed,
+    segments: &mut Vec<Segment, 64>,
+) {
+    let echo = |reading: Option<&RangeReading>| {
+        reading.is_some_and(|r| matches!(judge(ring, r, MetresPerSecond::ZERO), Range::Echo(_)))
+    };
+    let (Some(first), Some(last)) = (sensed.echoes.first(), sensed.echoes.last()) else {
+        return;
+    };
+    let meet = echo(readings.first())
+        && echo(readings.last())
+        && segments.len() >= 2
+        && (*last - *first).norm() <= ring.gap;
+    if !meet {
+        return;
+    }
+    let Some(tail) = segments.pop() else { return };
+    sensed.echoes.rotate_right(tail.count);
+    for segment in segments.iter_mut() {
+        segment.start = segment.start.saturating_add(tail.count);
+    }
+    if let Some(head) = segments.first_mut() {
+        head.start = 0;
+        head.count = head.count.saturating_add(tail.count);
+    }
+}
+
+/// The circle behind a segment. Where the fit is not believable (fewer than three echoes, nearly a line, a radius or
+/// residual out of bounds) the smallest circle that can have made the echoes stands in: as wide as they are, its
+/// surface through the nearest.
+fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstacle {
+    let [least, most] = ring.radius;
+    let echoes = u8::try_from(points.len()).unwrap_or(u8::MAX);
+    if let Some(fit) = fit_circle(points)
+        && fit.radius >= least
+        && fit.radius <= most
+        && fit.residual <= ring.residual
+        && farther(fit.centre, points)
+    {
+        return Obstacle {
+            centre: fit.centre,
+            radius: fit.radius,
+            residual: fit.residual,
+            echoes,
+        };
+    }
+    let ends = (
+        points.first().copied().unwrap_or_default(),
+        points.last().copied().unwrap_or_default(),
+    );
+    let width = (ends.1 - ends.0).norm();
+    let radius = Metres::from_bits(width.bits() >> 1).max(least).min(most);
+    let nearest = points
+        .iter()
+        .map(|p| p.norm())
+        .min()
+        .unwrap_or(Metres::ZERO);
+    let sum = ends.0 + ends.1;
+    Obstacle {
+        centre: Point::polar(nearest + radius, sum.direction()),
+        radius,
+        residual: ring.residual,
+        echoes,
+    }
+}
+
+/// A disc shows its front: its centre is farther than its echoes' mean. A hollow the other way round is no disc.
+fn farther(centre: Point, points: &[Point]) -> bool {
+    points.iter().any(|p| p.norm() < centre.norm())
+}
+
+/// Keeps the list sorted by free distance and, when full, drops the farthest.
+fn insert(obstacles: &mut Vec<Obstacle, MAX_OBSTACLES>, new: Obstacle) {
+    let key = |o: &Obstacle| o.centre.norm() - o.radius;
+    let place = obstacles.iter().position(|o| key(o) > key(&new));
+    if obstacles.is_full() {
+        if place.is_none() {
+            return;
+        }
+        obstacles.pop();
+    }
+    let place = place.unwrap_or(obstacles.len()).min(obstacles.len());
+    if obstacles.insert(place, new).is_err() {
+        // Unreachable: there is room and the place is inside.
+    }
+}

@@ -1,0 +1,227 @@
+//! The records that pass between the stages of one tick. Stages never see each other, only these.
+//!
+//! Frames: *world* is the odometry frame, in which the path is given too; *body* is the robot's, x forward, y left.
+
+use crate::fuzzy::FiredRule;
+use crate::geometry::{Point, Pose};
+use crate::ports::Fault;
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
+use heapless::Vec;
+
+/// The most obstacles that one scan yields; nearer ones win.
+pub const MAX_OBSTACLES: usize = 8;
+
+/// A circular obstacle, body frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Obstacle {
+    /// Centre, body frame.
+    pub centre: Point,
+    /// Radius, positive.
+    pub radius: Metres,
+    /// RMS distance of the echoes from the circle.
+    pub residual: Metres,
+    /// Echoes behind it.
+    pub echoes: u8,
+}
+
+impl Obstacle {
+    /// Direction of the centre, body frame: the chapter's θ.
+    pub fn bearing(&self) -> Angle {
+        self.centre.direction()
+    }
+
+    /// From the robot's rim to the obstacle's surface: the chapter's s. Not below zero.
+    pub fn free_distance(&self, robot_radius: Metres) -> Metres {
+        (self.centre.norm() - self.radius - robot_radius).max(Metres::ZERO)
+    }
+}
+
+/// What the sensors say this tick.
+#[derive(Clone, Debug, Default)]
+pub struct Sensed {
+    /// Echo points, body frame.
+    pub echoes: Vec<Point, 64>,
+    /// Obstacles, nearest surface first.
+    pub obstacles: Vec<Obstacle, MAX_OBSTACLES>,
+    /// Sensors with a valid reading.
+    pub valid: u8,
+    /// Nearest echo, as distance from the robot's centre; the largest value if there is none.
+    pub nearest: Metres,
+}
+
+/// Wheel travel since the last good reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Travel {
+    /// Counts of the left and right wheel.
+    Counts {
+        /// Left wheel.
+        left: i32,
+        /// Right wheel.
+        right: i32,
+    },
+    /// Unknown, and why.
+    Unknown(Fault),
+}
+
+/// Where the robot is relative to its path, and where guidance wants it to head.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Guidance {
+    /// Nearest path point within the cursor's reach, world.
+    pub foot: Point,
+    /// Signed cross-track error, left of the path positive.
+    pub cross_track: Metres,
+    /// Distance to the foot: the chapter's d before scaling.
+    pub distance: Metres,
+    /// Tangent at the foot: the chapter's ζ, world.
+    pub tangent: Angle,
+    /// Curvature where the next command will act.
+    pub curvature: PerMetre,
+    /// Direction to steer, body frame; its magnitude is the chapter's φ.
+    pub heading_error: Angle,
+    /// Path length up to the foot.
+    pub progress: Metres,
+    /// Path length still to go; the largest value on a closed path.
+    pub remaining: Metres,
+    /// Times the start of a closed path was passed.
+    pub laps: u16,
+    /// Speed that bends, corners and the end ahead allow.
+    pub speed_limit: MetresPerSecond,
+    /// The path's end is reached.
+    pub at_end: bool,
+}
+
+/// Which way past an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Turn {
+    /// Turn left: the obstacle stays on the right.
+    Left,
+    /// Turn right: the obstacle stays on the left.
+    Right,
+}
+
+/// Why the robot stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum StopReason {
+    /// No valid range reading for longer than allowed.
+    NoRanges,
+    /// No odometry for longer than allowed.
+    NoOdometry,
+    /// The path is driven to its end.
+    PathEnd,
+}
+
+/// What the higher level decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Decision {
+    /// Follow the path.
+    Follow,
+    /// Pass `obstacle` by turning to `side`.
+    Avoid {
+        /// The committed side.
+        side: Turn,
+        /// The obstacle held, body frame of this tick.
+        obstacle: Obstacle,
+    },
+    /// Stand still.
+    Stop(StopReason),
+}
+
+/// A commanded motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Twist {
+    /// Forward speed.
+    pub linear: MetresPerSecond,
+    /// Yaw rate, counter-clockwise positive.
+    pub angular: RadiansPerSecond,
+}
+
+/// Wheel speeds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct WheelCommand {
+    /// Left wheel.
+    pub left: MetresPerSecond,
+    /// Right wheel.
+    pub right: MetresPerSecond,
+}
+
+/// Which controller's rules a [`RuleTrace`] holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Controller {
+    /// None ran.
+    #[default]
+    None,
+    /// The fine follower: rows φ, columns d, both outputs.
+    Fine,
+    /// The coarse avoider: rows s, columns angle; `rules` of the deflection, `speed_rules` of the speed.
+    Coarse,
+}
+
+/// The lower level's inputs, outputs and fired rules, for the record.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct RuleTrace {
+    /// Which controller ran.
+    pub controller: Controller,
+    /// d (axis units) or s (share of the detection range), as `I16F16` bits.
+    pub distance_input: i32,
+    /// φ (fine, unsigned) or θ (coarse, chapter's sign), degrees as `I16F16` bits.
+    pub angle_input: i32,
+    /// Speed on its axis, the output's raw bits: `I3F13` (fine) or `I2F14` (coarse).
+    pub speed_output: i16,
+    /// Deflection in degrees, `I8F8` bits: unsigned (fine) or clockwise positive (coarse).
+    pub deflection_output: i16,
+    /// Rules of the (deflection) table.
+    pub rules: Vec<FiredRule, 4>,
+    /// Rules of the coarse speed table; empty for the fine controller, whose tables share theirs.
+    pub speed_rules: Vec<FiredRule, 4>,
+}
+
+/// What the lower level wants.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Behaviour {
+    /// Desired motion.
+    pub twist: Twist,
+    /// How it came about.
+    pub trace: RuleTrace,
+}
+
+/// Everything that one tick decided: the log's line, the replay's frame, the bit-exact digest's input.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TickRecord {
+    /// Number of the tick, from 0; wraps.
+    pub tick: u32,
+    /// Decision of the higher level.
+    pub decision: Decision,
+    /// Believed pose, world.
+    pub pose: Pose,
+    /// Relation to the path.
+    pub guidance: Guidance,
+    /// Obstacles in sight.
+    pub obstacles: u8,
+    /// Sensors with a valid reading.
+    pub valid_ranges: u8,
+    /// Nearest echo from the robot's centre.
+    pub nearest: Metres,
+    /// Lower level's inputs, outputs and rules.
+    pub trace: RuleTrace,
+    /// Motion that the lower level wanted.
+    pub desired: Twist,
+    /// Motion that the guard let pass and the drive's limits allow.
+    pub twist: Twist,
+    /// Wheel speeds commanded.
+    pub wheels: WheelCommand,
+    /// The guard had to slow or stop the robot.
+    pub guarded: bool,
+    /// Writing to a wheel failed.
+    pub drive_fault: bool,
+}

@@ -1,0 +1,317 @@
+//! The higher level: which sub-task runs. Thresholds, dwell and side commitment are assumed; the chapter gives none,
+//! and with a single threshold robots chatter.
+
+use crate::behaviour::avoider::unfeasible_half_angle;
+use crate::geometry::{Point, Pose};
+use crate::params::{Avoider, Supervisor};
+use crate::signals::{Decision, Guidance, Obstacle, Sensed, StopReason, Travel, Turn};
+use crate::units::{Angle, Metres};
+
+/// The mode of the higher level.
+///
+/// ```text
+///               enters_avoid                     every arrow is the function of that name
+///   ┌────────┐ ─────────────▶ ┌───────┐
+///   │ Follow │                │ Avoid │ ⟲ retarget: next obstacle in the way, same side
+///   └────────┘ ◀───────────── └───────┘
+///     ▲    │    leaves_avoid      │
+///     │    │ stops                │ stops
+///     │    ▼                      ▼
+///     │  ┌───────────────────────────┐
+///     └──│           Stop            │
+/// resumes└───────────────────────────┘
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Mode {
+    /// Following the path.
+    Follow,
+    /// Passing an obstacle, committed to a side.
+    Avoid,
+    /// Standing still.
+    Stop(StopReason),
+}
+
+/// An obstacle that was passed or is being passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Held {
+    /// Its centre, world frame.
+    pub centre: Point,
+    /// Its last estimate, body frame.
+    pub obstacle: Obstacle,
+    /// The side committed to.
+    pub side: Turn,
+    /// Ticks since it was last seen.
+    pub unseen: u16,
+}
+
+/// What the higher level remembers.
+#[derive(Clone, Copy, Debug)]
+pub struct SupervisorState {
+    mode: Mode,
+    /// Ticks in this mode, saturating.
+    dwelt: u16,
+    /// Ticks without any valid range.
+    blind: u16,
+    /// Ticks without odometry.
+    lost: u16,
+    /// Ticks since both are back.
+    healthy: u16,
+    held: Option<Held>,
+}
+
+impl Default for SupervisorState {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Follow,
+            // The first obstacle may stand right at the start: no dwell before it.
+            dwelt: u16::MAX,
+            blind: 0,
+            lost: 0,
+            healthy: 0,
+            held: None,
+        }
+    }
+}
+
+/// What a decision is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// The robot's radius.
+    pub robot_radius: Metres,
+    /// The sensors.
+    pub sensed: &'a Sensed,
+    /// Odometry of this tick.
+    pub travel: Travel,
+    /// Believed pose.
+    pub pose: Pose,
+    /// Relation to the path.
+    pub guidance: &'a Guidance,
+}
+
+impl SupervisorState {
+    /// Current mode.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Decides for one tick.
+    pub fn decide(
+        &mut self,
+        params: &Supervisor,
+        avoider: &Avoider,
+        now: &Situation<'_>,
+    ) -> Decision {
+        self.watch(now);
+        self.track(params, now);
+        let before = self.mode;
+        let reason = self.stops(params, now);
+        self.mode = match (self.mode, reason) {
+            (_, Some(reason)) => Mode::Stop(reason),
+            (Mode::Stop(_), None) if self.resumes(params, now) => Mode::Follow,
+            (Mode::Follow, None) => match self.enters_avoid(params, avoider, now) {
+                Some(held) => {
+                    self.held = Some(held);
+                    Mode::Avoid
+                }
+                None => Mode::Follow,
+            },
+            (Mode::Avoid, None) if self.leaves_avoid(params, avoider, now) => Mode::Follow,
+            (Mode::Avoid, None) => {
+                self.retarget(params, avoider, now);
+                Mode::Avoid
+            }
+            (stopped @ Mode::Stop(_), None) => stopped,
+        };
+        let changed = core::mem::discriminant(&before) != core::mem::discriminant(&self.mode);
+        self.dwelt = if changed {
+            0
+        } else {
+            self.dwelt.saturating_add(1)
+        };
+        match (self.mode, &self.held) {
+            (Mode::Avoid, Some(held)) => Decision::Avoid {
+                side: held.side,
+                obstacle: held.obstacle,
+            },
+            (Mode::Stop(reason), _) => Decision::Stop(reason),
+            _ => Decision::Follow,
+        }
+    }
+
+    /// Counts the ticks without ranges, without odometry, and with both.
+    fn watch(&mut self, now: &Situation<'_>) {
+        let count = |bad: bool, ticks: u16| if bad { ticks.saturating_add(1) } else { 0 };
+        self.blind = count(now.sensed.valid == 0, self.blind);
+        self.lost = count(matches!(now.travel, Travel::Unknown(_)), self.lost);
+        self.healthy = count(self.blind == 0 && self.lost == 0, self.healthy);
+    }
+
+    /// Carries the held obstacle along with odometry, and takes over what the sensors see of it.
+    fn track(&mut self, params: &Supervisor, now: &Situation<'_>) {
+        let Some(held) = &mut self.held else { return };
+        let expected = now.pose.to_body(held.centre);
+        let seen = now
+            .sensed
+            .obstacles
+            .iter()
+            .map(|o| ((o.centre - expected).norm(), o))
+            .filter(|(miss, _)| *miss <= params.same)
+            .min_by_key(|(miss, _)| *miss);
+        match seen {
+            Some((_, obstacle)) => {
+                // Halfway to the new estimate: one noisy fit must not swing the manoeuvre.
+                let half = |a: Metres, b: Metres| Metres::from_bits((a + b).bits() >> 1);
+                held.obstacle = Obstacle {
+                    centre: Point::new(
+                        half(expected.x, obstacle.centre.x),
+                        half(expected.y, obstacle.centre.y),
+                    ),
+                    radius: half(held.obstacle.radius, obstacle.radius),
+                    ..*obstacle
+                };
+                held.centre = now.pose.to_world(held.obstacle.centre);
+                held.unseen = 0;
+            }
+            None => {
+                held.obstacle.centre = expected;
+                held.unseen = held.unseen.saturating_add(1);
+            }
+        }
+    }
+
+    /// Any mode → Stop: sensing or odometry is gone for longer than patience allows, or the path is driven.
+    pub fn stops(&self, params: &Supervisor, now: &Situation<'_>) -> Option<StopReason> {
+        if now.guidance.at_end {
+            Some(StopReason::PathEnd)
+        } else if self.blind > params.patience {
+            Some(StopReason::NoRanges)
+        } else if self.lost > params.patience {
+            Some(StopReason::NoOdometry)
+        } else {
+            None
+        }
+    }
+
+    /// Stop → Follow: nothing stops the robot any more, and has not for the dwell time.
+    pub fn resumes(&self, params: &Supervisor, now: &Situation<'_>) -> bool {
+        self.stops(params, now).is_none() && self.healthy >= params.dwell.max(1)
+    }
+
+    /// Follow → Avoid: an obstacle nearer than `enter` covers the way that guidance wants, or one nearer than half of
+    /// that covers the way the robot points. The side is committed here.
+    pub fn enters_avoid(
+        &self,
+        params: &Supervisor,
+        avoider: &Avoider,
+        now: &Situation<'_>,
+    ) -> Option<Held> {
+        if self.dwelt < params.dwell {
+            return None;
+        }
+        let obstacle = threat(params, avoider, now)?;
+        let centre = now.pose.to_world(obstacle.centre);
+        let side = match &self.held {
+            Some(last) if (last.centre - centre).norm() <= params.same => last.side,
+            _ => choose_side(params, now, &obstacle),
+        };
+        Some(Held {
+            centre,
+            obstacle,
+            side,
+            unseen: 0,
+        })
+    }
+
+    /// Avoid → Follow: the obstacle is beyond `exit` or out of sight for longer than patience, or the way that
+    /// guidance wants clears its unfeasible region on the committed side; and no other obstacle is in the way.
+    pub fn leaves_avoid(
+        &self,
+        params: &Supervisor,
+        avoider: &Avoider,
+        now: &Situation<'_>,
+    ) -> bool {
+        let Some(held) = &self.held else { return true };
+        if self.dwelt < params.dwell {
+            return false;
+        }
+        let grown = now.robot_radius + avoider.margin;
+        let mirror = |angle: Angle| match held.side {
+            Turn::Right => angle,
+            Turn::Left => -angle,
+        };
+        let needed = unfeasible_half_angle(&held.obstacle, grown) + params.clear;
+        let bearing = held.obstacle.bearing();
+        let way = mirror(bearing - now.guidance.heading_error);
+        let heading = mirror(bearing);
+        let far = held.obstacle.free_distance(now.robot_radius) > params.exit;
+        let gone = held.unseen > params.patience;
+        let passed = way.bits() > needed.bits();
+        // The way may also have swung clear on the other side, if the robot already points there.
+        let other_side = way.bits() < -needed.bits() && heading.bits() < -needed.bits();
+        (far || gone || passed || other_side) && threat(params, avoider, now).is_none()
+    }
+
+    /// Avoid → Avoid: another obstacle in the way takes the held one's place once that is passed or it is the nearer;
+    /// the side stays.
+    pub fn retarget(&mut self, params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) {
+        let Some(held) = &mut self.held else { return };
+        let Some(obstacle) = threat(params, avoider, now) else {
+            return;
+        };
+        let centre = now.pose.to_world(obstacle.centre);
+        if (centre - held.centre).norm() > params.same {
+            held.centre = centre;
+            held.obstacle = obstacle;
+            held.unseen = 0;
+        }
+    }
+}
+
+/// The nearest obstacle in the way, if any.
+fn threat(params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) -> Option<Obstacle> {
+    let grown = now.robot_radius + avoider.margin;
+    now.sensed.obstacles.iter().copied().find(|obstacle| {
+        let free = obstacle.free_distance(now.robot_radius);
+        let half = unfeasible_half_angle(obstacle, grown);
+        let covers = |way: Angle| (obstacle.bearing() - way).abs().bits() < half.bits();
+        let near = Metres::from_bits(params.enter.bits() >> 1);
+        // What stands beyond the path's end is nobody's business.
+        free < now.guidance.remaining
+            && ((free < params.enter && covers(now.guidance.heading_error))
+                || (free < near && covers(Angle::ZERO)))
+    })
+}
+
+/// Which way past: away from the arc's centre when the obstacle stands inside the arc (inside rule); else right when
+/// it is on the left or straight ahead, left when it is on the right.
+fn choose_side(params: &Supervisor, now: &Situation<'_>, obstacle: &Obstacle) -> Turn {
+    if let Some(inside) = inside_rule(now, obstacle) {
+        return inside;
+    }
+    let off = obstacle.bearing() - now.guidance.heading_error;
+    if off.bits() < -params.tie.bits() {
+        Turn::Left
+    } else {
+        Turn::Right
+    }
+}
+
+/// The inside rule: on a circular path whose centre lies on the obstacle's side, pass outside. An obstacle whose
+/// centre is within a quarter of its radius of the path is on neither side.
+pub fn inside_rule(now: &Situation<'_>, obstacle: &Obstacle) -> Option<Turn> {
+    let curvature = now.guidance.curvature;
+    let radius = (1i64 << 32).checked_div(i64::from(curvature.bits()))?;
+    let radius = Metres::from_bits(crate::units::saturate(radius));
+    let centre = now.guidance.foot + Point::polar(radius, now.guidance.tangent + Angle::QUARTER);
+    let from_centre = (now.pose.to_world(obstacle.centre) - centre).norm();
+    let slack = Metres::from_bits(obstacle.radius.bits() >> 2);
+    if from_centre + slack >= radius.abs() {
+        return None;
+    }
+    Some(if curvature.bits() < 0 {
+        Turn::Left
+    } else {
+        Turn::Right
+    })
+}

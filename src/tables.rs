@@ -1,0 +1,4 @@
+//! The rule tables as const data, each with its source, its variants and its axes.
+
+pub mod coarse;
+pub mod fine;

@@ -1,0 +1,134 @@
+//! The robot's tick: every stage in order, one way out.
+
+use crate::behaviour::{avoider::avoid, follower::follow};
+use crate::drive::drive;
+use crate::geometry::Pose;
+use crate::guard::guard;
+use crate::guide::{Cursor, Path, guide};
+use crate::localise::Localiser;
+use crate::params::Params;
+use crate::ports::{Ports, RangeSensors, Side, WheelDrive, WheelEncoders};
+use crate::sense::{Odometer, sense_ranges};
+use crate::signals::{Behaviour, Decision, TickRecord, Twist};
+use crate::supervisor::{Situation, SupervisorState};
+
+/// A robot with `N` range sensors: its settings and everything that it remembers from tick to tick.
+#[derive(Clone, Debug)]
+pub struct Robot<const N: usize> {
+    params: Params<N>,
+    odometer: Odometer,
+    localiser: Localiser,
+    cursor: Cursor,
+    supervisor: SupervisorState,
+    last: Twist,
+    tick: u32,
+}
+
+impl<const N: usize> Robot<N> {
+    /// A robot at rest at `start` (world frame), at the beginning of its path. Pass [`Params::checked`] settings.
+    pub fn new(params: Params<N>, start: Pose) -> Self {
+        Self {
+            localiser: Localiser::new(&params.body, start),
+            params,
+            odometer: Odometer::default(),
+            cursor: Cursor::default(),
+            supervisor: SupervisorState::default(),
+            last: Twist::default(),
+            tick: 0,
+        }
+    }
+
+    /// The settings.
+    pub fn params(&self) -> &Params<N> {
+        &self.params
+    }
+
+    /// Believed pose.
+    pub fn pose(&self) -> Pose {
+        self.localiser.pose()
+    }
+
+    /// Puts the cursor back to the start of a (new) path; the pose stays.
+    pub fn restart_path(&mut self) {
+        self.cursor = Cursor::default();
+        self.supervisor = SupervisorState::default();
+    }
+
+    /// One control period: sense, localise, guide, decide, behave, guard, drive. Call it every `params.period`.
+    ///
+    /// Each port is used once, whatever fails; both wheels are always written.
+    pub fn tick<D, E, R>(&mut self, path: &Path<'_>, ports: &mut Ports<D, E, R>) -> TickRecord
+    where
+        D: WheelDrive,
+        E: WheelEncoders,
+        R: RangeSensors<N>,
+    {
+        let p = &self.params;
+        let counts = ports.encoders.counts();
+        let ranges = ports.ranges.ranges();
+
+        let travel = self.odometer.travel(counts);
+        let sensed = sense_ranges(&p.ring, &ranges, self.last.linear);
+        let pose = self.localiser.advance(&p.body, p.integrator, travel);
+        let timing = (p.period, p.latency);
+        let guidance = guide(
+            &p.follower,
+            &p.limits,
+            timing,
+            path,
+            &mut self.cursor,
+            pose,
+            self.last,
+        );
+        let situation = Situation {
+            robot_radius: p.body.radius,
+            sensed: &sensed,
+            travel,
+            pose,
+            guidance: &guidance,
+        };
+        let decision = self
+            .supervisor
+            .decide(&p.supervisor, &p.avoider, &situation);
+        let Behaviour {
+            twist: desired,
+            trace,
+        } = match &decision {
+            Decision::Follow => follow(&p.follower, &p.limits, p.period, &guidance, self.last),
+            Decision::Avoid { side, obstacle } => avoid(
+                &p.avoider,
+                &p.limits,
+                p.body.radius,
+                &sensed,
+                *side,
+                obstacle,
+            ),
+            Decision::Stop(_) => Behaviour::default(),
+        };
+        let reaction = p.period + p.latency;
+        let (passed, guarded) = guard(&p.guard, p.body.radius, reaction, &sensed, desired);
+        let driven = drive(&p.body, &p.limits, p.period, self.last, passed);
+
+        let left = ports.drive.set_speed(Side::Left, driven.wheels.left);
+        let right = ports.drive.set_speed(Side::Right, driven.wheels.right);
+
+        self.last = driven.twist;
+        let tick = self.tick;
+        self.tick = self.tick.wrapping_add(1);
+        TickRecord {
+            tick,
+            decision,
+            pose,
+            guidance,
+            obstacles: sensed.obstacles.len() as u8,
+            valid_ranges: sensed.valid,
+            nearest: sensed.nearest,
+            trace,
+            desired,
+            twist: driven.twist,
+            wheels: driven.wheels,
+            guarded,
+            drive_fault: left.is_err() || right.is_err(),
+        }
+    }
+}
