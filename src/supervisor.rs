@@ -268,9 +268,10 @@ impl SupervisorState {
     }
 }
 
-/// The nearest obstacle in the way, if any.
+/// The nearest obstacle in the way, if any. Half the margin is enough here: what is steered around with the whole
+/// margin does not come into the way again by a noisy estimate.
 fn threat(params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) -> Option<Obstacle> {
-    let grown = now.robot_radius + avoider.margin;
+    let grown = now.robot_radius + Metres::from_bits(avoider.margin.bits() >> 1);
     now.sensed.obstacles.iter().copied().find(|obstacle| {
         let free = obstacle.free_distance(now.robot_radius);
         let half = unfeasible_half_angle(obstacle, grown);

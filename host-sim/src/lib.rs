@@ -1,2 +1,20 @@
 //! host-sim: the desktop simulator around fuzzypilot's tick.
+//!
+//! A [`scenario`] says what is driven where; [`run`] closes the loop of [`plant`], [`sensors`] and the library's own
+//! `Robot::tick`; [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
+
+pub mod metrics;
+pub mod params;
+pub mod plant;
+pub mod plot;
+pub mod recorder;
 pub mod recording;
+pub mod replay;
+pub mod run;
+pub mod scenario;
+pub mod sensors;
+pub mod si;
+pub mod tables;
+pub mod ticks;
+pub mod track;
+pub mod world;

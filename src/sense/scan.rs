@@ -124,17 +124,27 @@ fn join_ends<const N: usize>(
     }
 }
 
-/// The circle behind a segment. Where the fit is not believable (fewer than three echoes, nearly a line, a radius or
-/// residual out of bounds) the smallest circle that can have made the echoes stands in: as wide as they are, its
-/// surface through the nearest.
+/// The circle behind a segment.
+///
+/// A fit is believed with at least [`ENOUGH`] echoes, a radius and residual within the ring's bounds and a radius of at
+/// most twice the half-width seen (a disc shows nearly its diameter; a flatter arc is noise or no disc). Otherwise the
+/// smallest disc that can have made the echoes stands in: as wide as they are and half a beam's spacing to either
+/// side, its surface through the nearest.
 fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstacle {
     let [least, most] = ring.radius;
     let echoes = u8::try_from(points.len()).unwrap_or(u8::MAX);
-    if let Some(fit) = fit_circle(points)
+    let first = points.first().copied().unwrap_or_default();
+    let last = points.last().copied().unwrap_or_default();
+    let width = (last - first).norm();
+    // Between echoes lie count − 1 spaces; one more covers what the outermost beams just missed.
+    let spaces = i32::from(echoes).saturating_sub(1).max(1);
+    let half_width = Metres::from_bits(width.bits().saturating_add(width.bits() / spaces) >> 1);
+    if points.len() >= ENOUGH
+        && let Some(fit) = fit_circle(points)
         && fit.radius >= least
-        && fit.radius <= most
+        && fit.radius <= most.min(half_width + half_width)
         && fit.residual <= ring.residual
-        && farther(fit.centre, points)
+        && points.iter().any(|p| p.norm() < fit.centre.norm())
     {
         return Obstacle {
             centre: fit.centre,
@@ -143,30 +153,22 @@ fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstac
             echoes,
         };
     }
-    let ends = (
-        points.first().copied().unwrap_or_default(),
-        points.last().copied().unwrap_or_default(),
-    );
-    let width = (ends.1 - ends.0).norm();
-    let radius = Metres::from_bits(width.bits() >> 1).max(least).min(most);
+    let radius = half_width.max(least).min(most);
     let nearest = points
         .iter()
         .map(|p| p.norm())
         .min()
         .unwrap_or(Metres::ZERO);
-    let sum = ends.0 + ends.1;
     Obstacle {
-        centre: Point::polar(nearest + radius, sum.direction()),
+        centre: Point::polar(nearest + radius, (first + last).direction()),
         radius,
         residual: ring.residual,
         echoes,
     }
 }
 
-/// A disc shows its front: its centre is farther than its echoes' mean. A hollow the other way round is no disc.
-fn farther(centre: Point, points: &[Point]) -> bool {
-    points.iter().any(|p| p.norm() < centre.norm())
-}
+/// Echoes from which a fit is believed: with fewer, a centimetre of noise doubles the radius.
+const ENOUGH: usize = 5;
 
 /// Keeps the list sorted by free distance and, when full, drops the farthest.
 fn insert(obstacles: &mut Vec<Obstacle, MAX_OBSTACLES>, new: Obstacle) {

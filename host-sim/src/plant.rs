@@ -1,0 +1,150 @@
+//! The robot's body as it truly moves: a unicycle with two wheels that lag and saturate, or equation 7.1 as printed.
+
+use fuzzypilot::params::Integrator;
+use std::collections::VecDeque;
+
+/// What the body can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantSettings {
+    /// Track width, m.
+    pub track: f64,
+    /// Rim speed limit of a wheel, m/s.
+    pub wheel_speed: f64,
+    /// Linear acceleration limit, m/s².
+    pub acceleration: f64,
+    /// Yaw acceleration limit, rad/s².
+    pub yaw_acceleration: f64,
+    /// Time constant of the wheel speed loop, s; 0 is immediate.
+    pub lag: f64,
+    /// Time from a command to its effect, s.
+    pub latency: f64,
+    /// How a step is integrated.
+    pub integrator: Integrator,
+}
+
+/// State of the body.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    settings: PlantSettings,
+    /// x, y, heading.
+    pub pose: [f64; 3],
+    /// Wheel speeds left, right, m/s.
+    pub wheels: [f64; 2],
+    /// Rim travel left, right since the start, m.
+    pub travel: [f64; 2],
+    /// Commands on their way: time of effect, wheel speeds.
+    pending: VecDeque<(f64, [f64; 2])>,
+    command: [f64; 2],
+    time: f64,
+}
+
+/// Integration step within a control period, s.
+const SUBSTEP: f64 = 0.005;
+
+impl Plant {
+    /// At rest at `pose`.
+    pub fn new(settings: PlantSettings, pose: [f64; 3]) -> Self {
+        Self {
+            settings,
+            pose,
+            wheels: [0.0; 2],
+            travel: [0.0; 2],
+            pending: VecDeque::new(),
+            command: [0.0; 2],
+            time: 0.0,
+        }
+    }
+
+    /// Takes a wheel command over, to act after the latency.
+    pub fn command(&mut self, wheels: [f64; 2]) {
+        self.pending
+            .push_back((self.time + self.settings.latency, wheels));
+    }
+
+    /// Lets one control period pass.
+    pub fn advance(&mut self, period: f64) {
+        match self.settings.integrator {
+            Integrator::Euler => {
+                self.receive();
+                self.wheels = self.command.map(|w| self.saturate(w));
+                self.travel_by(period);
+            }
+            Integrator::Arc => {
+                let steps = (period / SUBSTEP).ceil().max(1.0);
+                let dt = period / steps;
+                for _ in 0..steps as usize {
+                    self.receive();
+                    self.accelerate(dt);
+                    self.travel_by(dt);
+                }
+            }
+        }
+    }
+
+    fn saturate(&self, wheel: f64) -> f64 {
+        wheel.clamp(-self.settings.wheel_speed, self.settings.wheel_speed)
+    }
+
+    /// The newest command whose time has come.
+    fn receive(&mut self) {
+        while let Some((due, wheels)) = self.pending.front().copied() {
+            if due > self.time + 1e-9 {
+                break;
+            }
+            self.command = wheels;
+            self.pending.pop_front();
+        }
+    }
+
+    fn accelerate(&mut self, dt: f64) {
+        let share = if self.settings.lag > 0.0 {
+            1.0 - (-dt / self.settings.lag).exp()
+        } else {
+            1.0
+        };
+        let target: [f64; 2] = std::array::from_fn(|i| {
+            let goal = self.saturate(self.command[i]);
+            self.wheels[i] + (goal - self.wheels[i]) * share
+        });
+        let (v, w) = self.twist_of(self.wheels);
+        let (goal_v, goal_w) = self.twist_of(target);
+        let step = |from: f64, to: f64, most: f64| from + (to - from).clamp(-most, most);
+        let v = step(v, goal_v, self.settings.acceleration * dt);
+        let w = step(w, goal_w, self.settings.yaw_acceleration * dt);
+        let rim = w * self.settings.track / 2.0;
+        self.wheels = [v - rim, v + rim];
+    }
+
+    fn twist_of(&self, [left, right]: [f64; 2]) -> (f64, f64) {
+        ((left + right) / 2.0, (right - left) / self.settings.track)
+    }
+
+    fn travel_by(&mut self, dt: f64) {
+        let (v, w) = self.twist_of(self.wheels);
+        let [x, y, heading] = self.pose;
+        let turned = w * dt;
+        let (along, chord) = match self.settings.integrator {
+            // Equation 7.1: along the old heading, then turn.
+            Integrator::Euler => (heading, v * dt),
+            // The exact arc.
+            Integrator::Arc => {
+                let half = turned / 2.0;
+                let sinc = if half.abs() < 1e-9 {
+                    1.0
+                } else {
+                    half.sin() / half
+                };
+                (heading + half, v * dt * sinc)
+            }
+        };
+        self.pose = [
+            x + chord * along.cos(),
+            y + chord * along.sin(),
+            crate::world::wrap(heading + turned),
+        ];
+        for (travel, wheel) in self.travel.iter_mut().zip(self.wheels) {
+            *travel += wheel * dt;
+        }
+        self.time += dt;
+    }
+}

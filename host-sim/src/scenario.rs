@@ -1,0 +1,786 @@
+//! Scenarios: what is driven where. Built-in ones are TOML files of the same form that a user writes; this file reads
+//! and checks them, and names file, line, field and what is allowed when one is wrong.
+
+use crate::params::{Control, Preset};
+use crate::recording::Disc;
+use crate::sensors::Noise;
+use crate::track::{Piece, Track};
+use crate::world::World;
+use serde::Deserialize;
+use std::path::Path;
+use toml::Spanned;
+
+/// A scenario that has passed every check.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Its name: the built-in's or the file's stem.
+    pub name: String,
+    /// One line about it.
+    pub about: String,
+    /// Body, limits and timing.
+    pub robot: RobotSpec,
+    /// Range sensors.
+    pub sensors: SensorSpec,
+    /// Their errors.
+    pub noise: Noise,
+    /// Start: x, y, heading in radians.
+    pub start: [f64; 3],
+    /// The path.
+    pub path: PathSpec,
+    /// The obstacles.
+    pub world: World,
+    /// Longest simulated time, s.
+    pub duration: f64,
+    /// Laps of a closed path.
+    pub laps: u16,
+    /// Law and table variants.
+    pub control: Control,
+}
+
+/// Body, limits and timing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotSpec {
+    /// Where the values not given come from.
+    pub preset: Preset,
+    /// Radius of the disc, m.
+    pub radius: f64,
+    /// Track width, m.
+    pub track: f64,
+    /// Top speed, m/s.
+    pub speed: f64,
+    /// Top yaw rate, rad/s.
+    pub yaw_rate: f64,
+    /// Acceleration limit, m/s².
+    pub acceleration: f64,
+    /// Yaw acceleration limit, rad/s².
+    pub yaw_acceleration: f64,
+    /// Rim speed limit of a wheel, m/s.
+    pub wheel_speed: f64,
+    /// Control period, s.
+    pub period: f64,
+    /// Command latency, s.
+    pub latency: f64,
+    /// Wheel loop time constant, s.
+    pub lag: f64,
+}
+
+/// The sensor ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorSpec {
+    /// Number of sensors: one of [`RING_SIZES`].
+    pub count: usize,
+    /// Field of view, radians; a full turn closes the ring.
+    pub field_of_view: f64,
+    /// Largest range, m.
+    pub range: f64,
+    /// Opening angle of each, radians; 0 for beams.
+    pub width: f64,
+}
+
+/// Ring sizes that the simulator is built for.
+pub const RING_SIZES: [usize; 4] = [8, 16, 32, 64];
+
+/// The path's form.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathSpec {
+    /// Its pieces or points.
+    pub form: PathForm,
+    /// The end joins the start.
+    pub closed: bool,
+    /// Pieces need not meet.
+    pub gaps: bool,
+}
+
+/// Discrete points or lines and arcs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PathForm {
+    /// P_d(i) = [x, y, ζ], ζ in radians.
+    Points(Vec<[f64; 3]>),
+    /// Lines and arcs.
+    Pieces(Vec<Piece>),
+}
+
+impl PathSpec {
+    /// The same path for judging.
+    pub fn track(&self) -> Track {
+        match &self.form {
+            PathForm::Pieces(pieces) => Track::new(pieces.clone()),
+            PathForm::Points(points) => {
+                let xy = |p: &[f64; 3]| [p[0], p[1]];
+                let mut pieces: Vec<Piece> = points
+                    .windows(2)
+                    .map(|w| Piece::Line {
+                        from: xy(&w[0]),
+                        to: xy(&w[1]),
+                    })
+                    .collect();
+                if let (true, Some(first), Some(last)) =
+                    (self.closed, points.first(), points.last())
+                {
+                    pieces.push(Piece::Line {
+                        from: xy(last),
+                        to: xy(first),
+                    });
+                }
+                Track::new(pieces)
+            }
+        }
+    }
+}
+
+/// Why a scenario cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum ScenarioError {
+    /// Something in a file.
+    #[error("{file}:{line}: {field}: found {found}; allowed: {allowed}")]
+    Field {
+        /// The file, or the built-in's name.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Field with its table.
+        field: String,
+        /// What stands there.
+        found: String,
+        /// What may stand there.
+        allowed: String,
+    },
+    /// Neither a built-in nor a file.
+    #[error("unknown scenario `{name}`; allowed: a TOML file, or one of {known}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The built-in names.
+        known: String,
+    },
+    /// A file that cannot be read.
+    #[error(
+        "{file}: cannot be read ({why}); allowed: a readable TOML file, or a built-in name (see `host-sim list`)"
+    )]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// The system's reason.
+        why: String,
+    },
+}
+
+macro_rules! built_in {
+    ($($name:literal),* $(,)?) => {
+        /// Names and texts of the built-in scenarios, in the order of `host-sim list`.
+        pub const BUILT_IN: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!("../scenarios/", $name, ".toml")))),*];
+    };
+}
+
+built_in!(
+    "experiment-1",
+    "worked-example",
+    "line",
+    "line-offset",
+    "arc-5",
+    "arc-2",
+    "arc-1",
+    "dual-semicircle",
+    "circle",
+    "figure-eight",
+    "square",
+    "points",
+    "facing-away",
+    "one-obstacle",
+    "inside-arc",
+    "slalom",
+    "narrow-gap",
+);
+
+/// Finds a built-in scenario by its name, or reads a TOML file.
+pub fn load(name: &str) -> Result<Scenario, ScenarioError> {
+    if let Some((name, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
+        return parse(name, name, text);
+    }
+    let path = Path::new(name);
+    let looks_like_a_file = path.extension().is_some() || path.components().count() > 1;
+    if !path.exists() && !looks_like_a_file {
+        return Err(ScenarioError::Unknown {
+            name: name.to_owned(),
+            known: BUILT_IN
+                .iter()
+                .map(|(known, _)| *known)
+                .collect::<Vec<_>>()
+                .join(", "),
+        });
+    }
+    let text = std::fs::read_to_string(path).map_err(|e| ScenarioError::Unreadable {
+        file: name.to_owned(),
+        why: e.to_string(),
+    })?;
+    let stem = path
+        .file_stem()
+        .map_or_else(|| "scenario".into(), |s| s.to_string_lossy().into_owned());
+    parse(&stem, name, &text)
+}
+
+/// Parses and checks a scenario's text; `file` is what messages call it.
+pub fn parse(name: &str, file: &str, text: &str) -> Result<Scenario, ScenarioError> {
+    let source = Source { file, text };
+    let raw: Raw = toml::from_str(text).map_err(|e| source.syntax(&e))?;
+    raw.check(&source, name)
+}
+
+type Num = Spanned<f64>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Raw {
+    #[serde(default)]
+    about: String,
+    #[serde(default)]
+    robot: RawRobot,
+    #[serde(default)]
+    sensors: RawSensors,
+    #[serde(default)]
+    noise: RawNoise,
+    start: Spanned<RawStart>,
+    path: Spanned<RawPath>,
+    #[serde(default)]
+    obstacle: Vec<Spanned<RawDisc>>,
+    #[serde(default)]
+    run: RawRun,
+    #[serde(default)]
+    control: Control,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawRobot {
+    #[serde(default)]
+    preset: Preset,
+    radius: Option<Num>,
+    track: Option<Num>,
+    speed: Option<Num>,
+    yaw_rate: Option<Num>,
+    acceleration: Option<Num>,
+    yaw_acceleration: Option<Num>,
+    wheel_speed: Option<Num>,
+    period: Option<Num>,
+    latency: Option<Num>,
+    lag: Option<Num>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawSensors {
+    count: Option<Spanned<i64>>,
+    field_of_view: Option<Num>,
+    range: Option<Num>,
+    width: Option<Num>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawNoise {
+    range: Option<Num>,
+    dropout: Option<Num>,
+    wheel_scale: Option<Num>,
+    wheel_slip: Option<Num>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawStart {
+    x: Num,
+    y: Num,
+    heading: Num,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawPath {
+    #[serde(default)]
+    closed: bool,
+    #[serde(default)]
+    gaps: bool,
+    points: Option<Spanned<Vec<Spanned<[f64; 3]>>>>,
+    piece: Option<Vec<Spanned<RawPiece>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "lowercase")]
+enum RawPiece {
+    Line {
+        from: Spanned<[f64; 2]>,
+        to: Spanned<[f64; 2]>,
+    },
+    Arc {
+        centre: Spanned<[f64; 2]>,
+        radius: Num,
+        from: Num,
+        sweep: Num,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawDisc {
+    name: Option<String>,
+    x: Option<Num>,
+    y: Option<Num>,
+    along: Option<Num>,
+    offset: Option<Num>,
+    radius: Num,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawRun {
+    duration: Option<Num>,
+    laps: Option<Spanned<i64>>,
+}
+
+/// What a number may be.
+#[derive(Clone, Copy)]
+enum Allowed {
+    /// At least and at most.
+    Within(f64, f64),
+    /// Above the first, at most the second.
+    Above(f64, f64),
+}
+
+impl Allowed {
+    fn admits(self, x: f64) -> bool {
+        match self {
+            Self::Within(least, most) => x >= least && x <= most,
+            Self::Above(least, most) => x > least && x <= most,
+        }
+    }
+}
+
+impl std::fmt::Display for Allowed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Within(least, most) => write!(f, "a number from {least} to {most}"),
+            Self::Above(least, most) => write!(f, "a number above {least}, at most {most}"),
+        }
+    }
+}
+
+/// Coordinates: well inside what the library's metres hold.
+const PLACE: Allowed = Allowed::Within(-10_000.0, 10_000.0);
+const LENGTH: Allowed = Allowed::Above(0.0, 1_000.0);
+const DEGREES: Allowed = Allowed::Within(-36_000.0, 36_000.0);
+
+struct Source<'a> {
+    file: &'a str,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn line(&self, at: usize) -> usize {
+        let upto = self.text.get(..at.min(self.text.len())).unwrap_or("");
+        upto.matches('\n').count() + 1
+    }
+
+    fn wrong(
+        &self,
+        at: usize,
+        field: &str,
+        found: impl ToString,
+        allowed: impl ToString,
+    ) -> ScenarioError {
+        ScenarioError::Field {
+            file: self.file.to_owned(),
+            line: self.line(at),
+            field: field.to_owned(),
+            found: found.to_string(),
+            allowed: allowed.to_string(),
+        }
+    }
+
+    /// A message of the TOML reader, made to name the field.
+    fn syntax(&self, error: &toml::de::Error) -> ScenarioError {
+        let at = error.span().map_or(0, |s| s.start);
+        let before = self.text.get(..at.min(self.text.len())).unwrap_or("");
+        let line = self.text.lines().nth(self.line(at) - 1).unwrap_or("");
+        let table = before
+            .lines()
+            .chain(std::iter::once(line))
+            .filter_map(|l| l.trim().strip_prefix('['))
+            .next_back()
+            .map(|l| {
+                l.trim_start_matches('[')
+                    .split(']')
+                    .next()
+                    .unwrap_or("")
+                    .to_owned()
+            });
+        let key = line.split_once('=').map(|(key, _)| key.trim().to_owned());
+        let field = match (table, key) {
+            (Some(table), Some(key)) => format!("{table}.{key}"),
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => "file".to_owned(),
+        };
+        let message = error.message().replace('\n', " ");
+        let (found, allowed) = match message.split_once(", expected ") {
+            Some((found, allowed)) => (
+                found.trim_start_matches("invalid type: ").to_owned(),
+                match allowed {
+                    "f64" => "a number".to_owned(),
+                    "i64" => "a whole number".to_owned(),
+                    other => other.to_owned(),
+                },
+            ),
+            None => (
+                message,
+                "a scenario as `host-sim list --show line` prints one".to_owned(),
+            ),
+        };
+        self.wrong(at, &field, found, allowed)
+    }
+
+    fn number(&self, value: &Num, field: &str, allowed: Allowed) -> Result<f64, ScenarioError> {
+        let x = *value.get_ref();
+        if allowed.admits(x) {
+            Ok(x)
+        } else {
+            Err(self.wrong(value.span().start, field, x, allowed))
+        }
+    }
+
+    fn numbers<const K: usize>(
+        &self,
+        values: &Spanned<[f64; K]>,
+        field: &str,
+        allowed: Allowed,
+    ) -> Result<[f64; K], ScenarioError> {
+        match values.get_ref().iter().find(|x| !allowed.admits(**x)) {
+            None => Ok(*values.get_ref()),
+            Some(x) => Err(self.wrong(values.span().start, field, x, allowed)),
+        }
+    }
+
+    fn or(
+        &self,
+        value: Option<&Num>,
+        default: f64,
+        field: &str,
+        allowed: Allowed,
+    ) -> Result<f64, ScenarioError> {
+        value.map_or(Ok(default), |v| self.number(v, field, allowed))
+    }
+}
+
+impl Raw {
+    fn check(&self, src: &Source<'_>, name: &str) -> Result<Scenario, ScenarioError> {
+        let robot = self.robot.check(src)?;
+        let sensors = self.sensors.check(src, robot.preset)?;
+        let noise = self.noise.check(src)?;
+        let path = check_path(src, &self.path)?;
+        let track = path.track();
+        let start = self.start.get_ref();
+        let start_at = self.start.span().start;
+        let start = [
+            src.number(&start.x, "start.x", PLACE)?,
+            src.number(&start.y, "start.y", PLACE)?,
+            src.number(&start.heading, "start.heading", DEGREES)?
+                .to_radians(),
+        ];
+        let mut world = World::default();
+        for (i, disc) in self.obstacle.iter().enumerate() {
+            world.discs.push(check_disc(src, i, disc, &track)?);
+        }
+        if let (clearance, Some(i)) = world.clearance([start[0], start[1]], robot.radius)
+            && clearance <= 0.0
+        {
+            return Err(src.wrong(
+                start_at,
+                "start",
+                format!(
+                    "a robot of radius {} inside obstacle `{}`",
+                    robot.radius, world.discs[i].name
+                ),
+                "a start where the robot touches nothing",
+            ));
+        }
+        let duration = src.or(
+            self.run.duration.as_ref(),
+            600.0,
+            "run.duration",
+            Allowed::Above(0.0, 100_000.0),
+        )?;
+        let laps = match &self.run.laps {
+            None => 1,
+            Some(laps) => u16::try_from(*laps.get_ref())
+                .ok()
+                .filter(|laps| (1..=1000).contains(laps))
+                .ok_or_else(|| {
+                    src.wrong(
+                        laps.span().start,
+                        "run.laps",
+                        laps.get_ref(),
+                        "a whole number from 1 to 1000",
+                    )
+                })?,
+        };
+        Ok(Scenario {
+            name: name.to_owned(),
+            about: self.about.clone(),
+            robot,
+            sensors,
+            noise,
+            start,
+            path,
+            world,
+            duration,
+            laps,
+            control: self.control,
+        })
+    }
+}
+
+impl RawRobot {
+    fn check(&self, src: &Source<'_>) -> Result<RobotSpec, ScenarioError> {
+        let base = self.preset.robot();
+        let rate = Allowed::Above(0.0, 100.0);
+        let time = Allowed::Within(0.0, 2.0);
+        Ok(RobotSpec {
+            preset: self.preset,
+            radius: src.or(self.radius.as_ref(), base.radius, "robot.radius", LENGTH)?,
+            track: src.or(self.track.as_ref(), base.track, "robot.track", LENGTH)?,
+            speed: src.or(self.speed.as_ref(), base.speed, "robot.speed", rate)?,
+            yaw_rate: src.or(
+                self.yaw_rate.as_ref(),
+                base.yaw_rate,
+                "robot.yaw_rate",
+                rate,
+            )?,
+            acceleration: src.or(
+                self.acceleration.as_ref(),
+                base.acceleration,
+                "robot.acceleration",
+                rate,
+            )?,
+            yaw_acceleration: src.or(
+                self.yaw_acceleration.as_ref(),
+                base.yaw_acceleration,
+                "robot.yaw_acceleration",
+                rate,
+            )?,
+            wheel_speed: src.or(
+                self.wheel_speed.as_ref(),
+                base.wheel_speed,
+                "robot.wheel_speed",
+                rate,
+            )?,
+            period: src.or(
+                self.period.as_ref(),
+                base.period,
+                "robot.period",
+                Allowed::Within(0.001, 2.0),
+            )?,
+            latency: src.or(self.latency.as_ref(), base.latency, "robot.latency", time)?,
+            lag: src.or(self.lag.as_ref(), base.lag, "robot.lag", time)?,
+        })
+    }
+}
+
+impl RawSensors {
+    fn check(&self, src: &Source<'_>, preset: Preset) -> Result<SensorSpec, ScenarioError> {
+        let base = preset.sensors();
+        let turn = Allowed::Above(0.0, 360.0);
+        let count = match &self.count {
+            None => base.count,
+            Some(count) => usize::try_from(*count.get_ref())
+                .ok()
+                .filter(|c| RING_SIZES.contains(c))
+                .ok_or_else(|| {
+                    src.wrong(
+                        count.span().start,
+                        "sensors.count",
+                        count.get_ref(),
+                        "8, 16, 32 or 64",
+                    )
+                })?,
+        };
+        let degrees = |value: Option<&Num>, default: f64, field: &str, allowed: Allowed| {
+            src.or(value, default.to_degrees(), field, allowed)
+                .map(f64::to_radians)
+        };
+        Ok(SensorSpec {
+            count,
+            field_of_view: degrees(
+                self.field_of_view.as_ref(),
+                base.field_of_view,
+                "sensors.field_of_view",
+                turn,
+            )?,
+            range: src.or(
+                self.range.as_ref(),
+                base.range,
+                "sensors.range",
+                Allowed::Above(0.0, 100.0),
+            )?,
+            width: degrees(
+                self.width.as_ref(),
+                base.width,
+                "sensors.width",
+                Allowed::Within(0.0, 90.0),
+            )?,
+        })
+    }
+}
+
+impl RawNoise {
+    fn check(&self, src: &Source<'_>) -> Result<Noise, ScenarioError> {
+        let share = Allowed::Within(0.0, 1.0);
+        Ok(Noise {
+            range: src.or(self.range.as_ref(), 0.0, "noise.range", share)?,
+            dropout: src.or(self.dropout.as_ref(), 0.0, "noise.dropout", share)?,
+            wheel_scale: src.or(self.wheel_scale.as_ref(), 0.0, "noise.wheel_scale", share)?,
+            wheel_slip: src.or(self.wheel_slip.as_ref(), 0.0, "noise.wheel_slip", share)?,
+        })
+    }
+}
+
+fn check_path(src: &Source<'_>, raw: &Spanned<RawPath>) -> Result<PathSpec, ScenarioError> {
+    let at = raw.span().start;
+    let raw = raw.get_ref();
+    let form = match (&raw.points, &raw.piece) {
+        (Some(points), None) => {
+            let list = points.get_ref();
+            if !(2..=4096).contains(&list.len()) {
+                let found = match list.len() {
+                    1 => "1 point".to_owned(),
+                    n => format!("{n} points"),
+                };
+                return Err(src.wrong(
+                    points.span().start,
+                    "path.points",
+                    found,
+                    "2 to 4096 points [x, y, degrees]",
+                ));
+            }
+            let mut checked: Vec<[f64; 3]> = Vec::with_capacity(list.len());
+            for (i, point) in list.iter().enumerate() {
+                let field = format!("path.points[{i}]");
+                let [x, y, degrees] =
+                    src.numbers(point, &field, Allowed::Within(-36_000.0, 36_000.0))?;
+                if let Some(last) = checked.last()
+                    && (last[0] - x).hypot(last[1] - y) < 1e-3
+                {
+                    return Err(src.wrong(
+                        point.span().start,
+                        &field,
+                        "the same place as the point before",
+                        "points at least 1 mm apart",
+                    ));
+                }
+                checked.push([x, y, degrees.to_radians()]);
+            }
+            PathForm::Points(checked)
+        }
+        (None, Some(pieces)) if !pieces.is_empty() && pieces.len() <= 4096 => {
+            let mut checked: Vec<Piece> = Vec::with_capacity(pieces.len());
+            for (i, piece) in pieces.iter().enumerate() {
+                let field = format!("path.piece[{i}]");
+                let new = check_piece(src, &field, piece.get_ref())?;
+                if new.length() < 1e-3 {
+                    return Err(src.wrong(
+                        piece.span().start,
+                        &field,
+                        "a piece without length",
+                        "pieces of at least 1 mm",
+                    ));
+                }
+                if let Some(last) = checked.last()
+                    && !raw.gaps
+                {
+                    let (end, start) = (last.at(last.length()), new.at(0.0));
+                    let gap = (end[0] - start[0]).hypot(end[1] - start[1]);
+                    if gap > 0.04 {
+                        return Err(src.wrong(
+                            piece.span().start,
+                            &field,
+                            format!("a gap of {gap:.3} m to the piece before"),
+                            "a start where the piece before ends, or `gaps = true`",
+                        ));
+                    }
+                }
+                checked.push(new);
+            }
+            PathForm::Pieces(checked)
+        }
+        _ => {
+            return Err(src.wrong(
+                at,
+                "path",
+                "neither or both, or too many",
+                "either `points` or 1 to 4096 `[[path.piece]]`",
+            ));
+        }
+    };
+    Ok(PathSpec {
+        form,
+        closed: raw.closed,
+        gaps: raw.gaps,
+    })
+}
+
+fn check_piece(src: &Source<'_>, field: &str, raw: &RawPiece) -> Result<Piece, ScenarioError> {
+    let sub = |name: &str| format!("{field}.{name}");
+    Ok(match raw {
+        RawPiece::Line { from, to } => Piece::Line {
+            from: src.numbers(from, &sub("line.from"), PLACE)?,
+            to: src.numbers(to, &sub("line.to"), PLACE)?,
+        },
+        RawPiece::Arc {
+            centre,
+            radius,
+            from,
+            sweep,
+        } => Piece::Arc {
+            centre: src.numbers(centre, &sub("arc.centre"), PLACE)?,
+            radius: src.number(radius, &sub("arc.radius"), LENGTH)?,
+            from: src.number(from, &sub("arc.from"), DEGREES)?.to_radians(),
+            sweep: src
+                .number(sweep, &sub("arc.sweep"), Allowed::Within(-360.0, 360.0))?
+                .to_radians(),
+        },
+    })
+}
+
+fn check_disc(
+    src: &Source<'_>,
+    i: usize,
+    raw: &Spanned<RawDisc>,
+    track: &Track,
+) -> Result<Disc, ScenarioError> {
+    let at = raw.span().start;
+    let raw = raw.get_ref();
+    let field = |name: &str| format!("obstacle[{i}].{name}");
+    let radius = src.number(&raw.radius, &field("radius"), LENGTH)?;
+    let [x, y] = match (&raw.x, &raw.y, &raw.along, &raw.offset) {
+        (Some(x), Some(y), None, None) => [
+            src.number(x, &field("x"), PLACE)?,
+            src.number(y, &field("y"), PLACE)?,
+        ],
+        (None, None, Some(along), offset) => {
+            let along = src.number(along, &field("along"), Allowed::Within(0.0, 1.0))?;
+            let offset = src.or(offset.as_ref(), 0.0, &field("offset"), PLACE)?;
+            track.beside(along, offset)
+        }
+        _ => {
+            return Err(src.wrong(
+                at,
+                &format!("obstacle[{i}]"),
+                "an unclear place",
+                "either `x` and `y`, or `along` (share of the path, 0 to 1) and `offset` (m, left positive)",
+            ));
+        }
+    };
+    Ok(Disc {
+        name: raw.name.clone().unwrap_or_else(|| format!("Obs{}", i + 1)),
+        x,
+        y,
+        radius,
+    })
+}
