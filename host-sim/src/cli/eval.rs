@@ -1,0 +1,353 @@
+//! `host-sim eval`
+
+use super::BadInput;
+use clap::{Args, Subcommand};
+use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
+use fixed::types::I16F16;
+use fuzzypilot::fuzzy::FiredRule;
+use fuzzypilot::tables::coarse::{self, CoarseOutput, CoarseTables};
+use fuzzypilot::tables::fine::{self, FineOutput, FineSet, FineTables};
+use host_sim::params::{CoarseName, Control, FineNn, InputName, Preset, TablesName};
+use host_sim::tables::reference;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct EvalArguments {
+    #[command(subcommand)]
+    controller: Controller,
+}
+
+#[derive(Subcommand)]
+enum Controller {
+    /// The fine follower: d on [0, 4], phi in degrees on [0, 180] to v on [0, 3] and deflection in degrees.
+    Fine(FineArguments),
+    /// The coarse avoider: s in metres, theta in degrees on [-90, 90] (positive: obstacle on the left) to deflection
+    /// in degrees (positive: clockwise) and speed as a share of Vmax.
+    Coarse(CoarseArguments),
+}
+
+#[derive(Args)]
+struct FineArguments {
+    /// Distance d, axis units.
+    #[arg(allow_negative_numbers = true)]
+    d: Option<String>,
+    /// Angle phi, degrees.
+    #[arg(allow_negative_numbers = true)]
+    phi: Option<String>,
+    /// Evaluate every row of this CSV file (columns d,phi) and print CSV (d,phi,v,dphi).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["d", "phi"])]
+    points: Option<PathBuf>,
+    /// Which tables.
+    #[arg(long, value_enum, default_value = "printed")]
+    tables: TablesName,
+    /// Erratum of the worked example.
+    #[arg(long, value_enum, default_value = "table")]
+    fine_nn: FineNn,
+}
+
+#[derive(Args)]
+struct CoarseArguments {
+    /// Distance s from rim to surface, m.
+    #[arg(allow_negative_numbers = true)]
+    s: Option<String>,
+    /// Angle theta, degrees.
+    #[arg(allow_negative_numbers = true)]
+    theta: Option<String>,
+    /// Evaluate every row of this CSV file (columns s,theta) and print CSV (s,theta,dtheta,v).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["s", "theta"])]
+    points: Option<PathBuf>,
+    /// Detection range D, m: top of the s axis.
+    #[arg(long, default_value = "4")]
+    range: String,
+    /// Erratum of Table 7.3.
+    #[arg(long = "table-7-3", value_enum, default_value = "corrected")]
+    table_7_3: CoarseName,
+    /// Erratum of Table 7.4.
+    #[arg(long = "table-7-4-input", value_enum, default_value = "deflection")]
+    table_7_4_input: InputName,
+}
+
+pub fn execute(arguments: &EvalArguments) -> anyhow::Result<()> {
+    match &arguments.controller {
+        Controller::Fine(arguments) => fine(arguments),
+        Controller::Coarse(arguments) => coarse(arguments),
+    }
+}
+
+fn fine(arguments: &FineArguments) -> anyhow::Result<()> {
+    let control = Control {
+        tables: Some(arguments.tables),
+        fine_nn: arguments.fine_nn,
+        ..Control::default()
+    };
+    let set = control.fine_set(Preset::Chapter);
+    if set == FineSet::Tuned && arguments.fine_nn == FineNn::Prose {
+        return Err(BadInput(
+            "--fine-nn prose: the tuned tables have no such erratum; allowed with --tables printed"
+                .into(),
+        )
+        .into());
+    }
+    let tables = set.tables();
+    let at = |d: f64, phi: f64| tables.evaluate(fixed(d), fixed(phi));
+    if let Some(file) = &arguments.points {
+        return many(file, ["d", "phi"], ["d", "phi", "v", "dphi"], |d, phi| {
+            let out = at(d, phi);
+            [out.speed.to_num(), out.deflection.to_num()]
+        });
+    }
+    let d = number("d", arguments.d.as_deref())?;
+    let phi = number("phi", arguments.phi.as_deref())?;
+    print_fine(tables, d, phi, &at(d, phi));
+    Ok(())
+}
+
+fn print_fine(tables: &FineTables, d: f64, phi: f64, out: &FineOutput) {
+    let peaks = (
+        tables.antecedents.rows.peaks().map(|p| p.to_num::<f64>()),
+        tables.antecedents.cols.peaks().map(|p| p.to_num::<f64>()),
+    );
+    let exact = |table: &dyn Fn() -> f64| table();
+    println!("fine controller at d = {d}, φ = {phi}°");
+    println!(
+        "{}",
+        outputs(&[
+            (
+                "v [axis units, 0 to 3]",
+                out.speed.to_num(),
+                exact(&|| reference(&tables.speed, (&peaks.0, &peaks.1), (phi, d))),
+                4
+            ),
+            (
+                "Δφ [°]",
+                out.deflection.to_num(),
+                exact(&|| reference(&tables.deflection, (&peaks.0, &peaks.1), (phi, d))),
+                3
+            ),
+        ])
+    );
+    let rules = out.activation.fired();
+    println!(
+        "{}",
+        fired(
+            ["φ", "d", "v", "Δφ"],
+            &rules,
+            &fine::TERMS,
+            &fine::DISTANCE_TERMS,
+            |rule| {
+                let (row, col) = (usize::from(rule.row), usize::from(rule.col));
+                [
+                    fine::TERMS[usize::from(tables.speed.terms()[row][col].0)],
+                    fine::TERMS[usize::from(tables.deflection.terms()[row][col].0)],
+                ]
+                .to_vec()
+            }
+        )
+    );
+}
+
+fn coarse(arguments: &CoarseArguments) -> anyhow::Result<()> {
+    let control = Control {
+        table_7_3: arguments.table_7_3,
+        table_7_4_input: arguments.table_7_4_input,
+        ..Control::default()
+    };
+    let tables = control.coarse_set().tables();
+    let input = control.speed_input();
+    let range = number("--range", Some(&arguments.range))?;
+    if range <= 0.0 {
+        return Err(BadInput(format!(
+            "--range: found {range}; allowed is a number above 0"
+        ))
+        .into());
+    }
+    let at = |s: f64, theta: f64| tables.evaluate(fixed(s / range), fixed(theta), input);
+    if let Some(file) = &arguments.points {
+        return many(
+            file,
+            ["s", "theta"],
+            ["s", "theta", "dtheta", "v"],
+            |s, theta| {
+                let out = at(s, theta);
+                [out.deflection.to_num(), out.speed.to_num()]
+            },
+        );
+    }
+    let s = number("s", arguments.s.as_deref())?;
+    let theta = number("theta", arguments.theta.as_deref())?;
+    print_coarse(tables, [s, theta, range], input, &at(s, theta));
+    Ok(())
+}
+
+fn print_coarse(
+    tables: &CoarseTables,
+    [s, theta, range]: [f64; 3],
+    input: coarse::SpeedInput,
+    out: &CoarseOutput,
+) {
+    let peaks = (
+        tables.antecedents.rows.peaks().map(|p| p.to_num::<f64>()),
+        tables.antecedents.cols.peaks().map(|p| p.to_num::<f64>()),
+    );
+    let share = s / range;
+    let deflection = reference(&tables.deflection, (&peaks.0, &peaks.1), (share, theta));
+    let angle = match input {
+        coarse::SpeedInput::Deflection => deflection,
+        coarse::SpeedInput::Bearing => theta,
+    };
+    let speed = reference(&tables.speed, (&peaks.0, &peaks.1), (share, angle));
+    println!(
+        "coarse controller at s = {s} m of {range} m, θ = {theta}° (positive: obstacle on the left)"
+    );
+    println!(
+        "{}",
+        outputs(&[
+            ("Δθ [°, clockwise]", out.deflection.to_num(), deflection, 3),
+            ("v [share of Vmax]", out.speed.to_num(), speed, 4),
+        ])
+    );
+    let (column, names) = match input {
+        coarse::SpeedInput::Deflection => ("Δθ", "7.4: v"),
+        coarse::SpeedInput::Bearing => ("θ", "7.4: v"),
+    };
+    let term =
+        |terms: &[[fuzzypilot::fuzzy::Term; 3]; 3], rule: &FiredRule, of: [&'static str; 3]| {
+            vec![of[usize::from(terms[usize::from(rule.row)][usize::from(rule.col)].0)]]
+        };
+    println!(
+        "{}",
+        fired(
+            ["s", "θ", "7.3: Δθ"],
+            &out.deflection_rules.fired(),
+            &coarse::DISTANCE_TERMS,
+            &coarse::ANGLE_TERMS,
+            |rule| term(tables.deflection.terms(), rule, coarse::ANGLE_TERMS),
+        )
+    );
+    println!(
+        "{}",
+        fired(
+            ["s", column, names],
+            &out.speed_rules.fired(),
+            &coarse::DISTANCE_TERMS,
+            &coarse::ANGLE_TERMS,
+            |rule| term(tables.speed.terms(), rule, coarse::SPEED_TERMS),
+        )
+    );
+}
+
+fn outputs(rows: &[(&str, f64, f64, usize)]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["output", "fixed point", "f64", "difference"]);
+    for (name, fixed, exact, digits) in rows {
+        table.add_row([
+            (*name).to_owned(),
+            format!("{fixed:.digits$}"),
+            format!("{exact:.digits$}"),
+            format!("{:+.1e}", fixed - exact),
+        ]);
+    }
+    table
+}
+
+fn fired<const K: usize>(
+    header: [&str; K],
+    rules: &[FiredRule],
+    rows: &[&str],
+    cols: &[&str],
+    conclude: impl Fn(&FiredRule) -> Vec<&'static str>,
+) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(header.iter().copied().chain(["degree"]));
+    for rule in rules {
+        let mut cells = vec![rows[usize::from(rule.row)], cols[usize::from(rule.col)]];
+        cells.extend(conclude(rule));
+        let mut cells: Vec<String> = cells.into_iter().map(str::to_owned).collect();
+        cells.push(format!("{:.3}", f64::from(rule.degree.bits()) / 32_768.0));
+        table.add_row(cells);
+    }
+    table
+}
+
+/// The engine's input format; what does not fit saturates, as it does on the robot.
+fn fixed(x: f64) -> I16F16 {
+    host_sim::si::number(x)
+}
+
+fn number(name: &str, text: Option<&str>) -> Result<f64, BadInput> {
+    let text =
+        text.ok_or_else(|| BadInput(format!("{name}: missing; allowed is a finite number")))?;
+    match text.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        _ => Err(BadInput(format!(
+            "{name}: found `{text}`; allowed is a finite number"
+        ))),
+    }
+}
+
+/// Evaluates a file row by row; prints nothing unless every row is good.
+fn many(
+    file: &std::path::Path,
+    inputs: [&str; 2],
+    columns: [&str; 4],
+    evaluate: impl Fn(f64, f64) -> [f64; 2],
+) -> anyhow::Result<()> {
+    let name = file.display();
+    let bad = |line: u64, what: String| BadInput(format!("{name}:{line}: {what}"));
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_path(file)
+        .map_err(|e| {
+            BadInput(format!(
+                "{name}: cannot be read ({e}); allowed is a CSV file with columns {}",
+                inputs.join(",")
+            ))
+        })?;
+    let header = reader.headers().map_err(|e| bad(1, e.to_string()))?.clone();
+    let mut place = [0; 2];
+    for (slot, input) in place.iter_mut().zip(inputs) {
+        *slot = header.iter().position(|h| h == input).ok_or_else(|| {
+            bad(
+                1,
+                format!(
+                    "header: found `{}`; allowed are columns {}",
+                    header.iter().collect::<Vec<_>>().join(","),
+                    inputs.join(",")
+                ),
+            )
+        })?;
+    }
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(columns)?;
+    for (index, row) in reader.records().enumerate() {
+        let row = row.map_err(|e| {
+            let line = e.position().map_or(index as u64 + 2, csv::Position::line);
+            bad(
+                line,
+                format!("row: {e}; allowed are as many fields as the header has"),
+            )
+        })?;
+        let line = row.position().map_or(index as u64 + 2, csv::Position::line);
+        let mut values = [0.0; 2];
+        for ((value, at), input) in values.iter_mut().zip(place).zip(inputs) {
+            let text = row.get(at).unwrap_or("");
+            *value = text
+                .parse::<f64>()
+                .ok()
+                .filter(|x| x.is_finite())
+                .ok_or_else(|| {
+                    bad(
+                        line,
+                        format!("{input}: found `{text}`; allowed is a finite number"),
+                    )
+                })?;
+        }
+        let [a, b] = evaluate(values[0], values[1]);
+        let echo = |i: usize| row.get(place[i]).unwrap_or("").to_owned();
+        writer.write_record([echo(0), echo(1), a.to_string(), b.to_string()])?;
+    }
+    print!("{}", String::from_utf8(writer.into_inner()?)?);
+    Ok(())
+}

@@ -1,0 +1,238 @@
+//! `host-sim run`
+
+use super::{BadInput, Variants, load};
+use anyhow::Context;
+use clap::Args;
+use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
+use host_sim::metrics::{Metrics, Summary};
+use host_sim::recording::Recording;
+use host_sim::run::simulate;
+use host_sim::scenario::Scenario;
+use host_sim::{plot, recorder, replay, ticks};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub struct RunArguments {
+    /// Built-in scenario (see `host-sim list`) or a TOML file; experiment-1 when left out.
+    scenario: Option<String>,
+    #[command(flatten)]
+    variants: Variants,
+    /// Seed of the run's noise.
+    #[arg(long, default_value_t = SEED)]
+    seed: u64,
+    /// Folder for the results; out/SCENARIO when left out.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also write the summary to this file.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// The seed that is used when none is given.
+const SEED: u64 = 1;
+
+impl Default for RunArguments {
+    fn default() -> Self {
+        Self {
+            scenario: None,
+            variants: Variants::default(),
+            seed: SEED,
+            out: None,
+            json: None,
+        }
+    }
+}
+
+pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
+    let name = arguments.scenario.as_deref().unwrap_or("experiment-1");
+    let scenario = load(name, &arguments.variants)?;
+    let folder = match &arguments.out {
+        Some(folder) => folder.clone(),
+        None => Path::new("out").join(&scenario.name),
+    };
+    check_destination(&folder, arguments.json.as_deref())?;
+
+    let progress = progress(&scenario);
+    let mut metrics = Metrics::new(&scenario, arguments.seed);
+    let mut recording = recorder::start(&scenario, arguments.seed);
+    let mut rows = Vec::new();
+    progress.set_message("driving");
+    let ending = simulate(&scenario, arguments.seed, &mut |step| {
+        metrics.observe(&step);
+        recorder::record(&mut recording, &step);
+        rows.push(ticks::row(step.record));
+        if rows.len() % 64 == 0 {
+            progress.set_position(rows.len() as u64);
+        }
+    })?;
+    let summary = metrics.finish(ending);
+    progress.set_message("drawing");
+    write(&folder, &summary, &recording, &rows)?;
+    if let Some(file) = &arguments.json {
+        put(file, &json(&summary)?)?;
+    }
+    progress.finish_and_clear();
+    report(&scenario, &summary);
+    println!("written: {}", folder.display());
+    Ok(())
+}
+
+/// Refuses early what could only be written half.
+fn check_destination(folder: &Path, json: Option<&Path>) -> Result<(), BadInput> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(BadInput(format!(
+            "--out {}: is a file; allowed is a folder, existing or new",
+            folder.display()
+        )));
+    }
+    if let Some(file) = json {
+        let parent = file.parent().filter(|p| !p.as_os_str().is_empty());
+        if file.is_dir() || parent.is_some_and(|p| !p.is_dir()) {
+            return Err(BadInput(format!(
+                "--json {}: allowed is a file in an existing folder",
+                file.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn progress(scenario: &Scenario) -> ProgressBar {
+    let ticks = (scenario.duration / scenario.robot.period).ceil() as u64;
+    let target = if std::io::stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
+    let style = ProgressStyle::with_template("{msg:8} {bar:40} tick {pos} of at most {len}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::with_draw_target(Some(ticks), target).with_style(style)
+}
+
+fn json(summary: &Summary) -> anyhow::Result<Vec<u8>> {
+    let mut text = serde_json::to_string_pretty(summary)?;
+    text.push('\n');
+    Ok(text.into_bytes())
+}
+
+/// Writes a file whole or not at all.
+fn put(file: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let mut partial = file.as_os_str().to_owned();
+    partial.push(".partial");
+    let partial = PathBuf::from(partial);
+    std::fs::write(&partial, bytes)
+        .and_then(|()| std::fs::rename(&partial, file))
+        .with_context(|| format!("{}: cannot be written", file.display()))
+}
+
+fn write(
+    folder: &Path,
+    summary: &Summary,
+    recording: &Recording,
+    rows: &[Vec<String>],
+) -> anyhow::Result<()> {
+    let svg = plot::run_svg(recording)?;
+    let page = replay::html(recording)?;
+    let table = ticks::csv(rows)?;
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: cannot be created", folder.display()))?;
+    plot::write_pair(folder, "run", &svg)?;
+    put(&folder.join("replay.html"), page.as_bytes())?;
+    put(&folder.join("ticks.csv"), &table)?;
+    put(&folder.join("summary.json"), &json(summary)?)
+}
+
+/// The chapter's story: obstacle, side, steps to pass it, steps to regain the path where given.
+const STORY: [(&str, &str, u64, Option<u64>); 3] = [
+    ("Obs4", "right", 69, Some(40)),
+    ("Obs5", "left", 36, None),
+    ("Obs6", "left", 49, None),
+];
+
+fn report(scenario: &Scenario, summary: &Summary) {
+    println!(
+        "{}: {} (seed {}), {} ticks, {:.1} s",
+        summary.scenario, summary.variant, summary.seed, summary.ticks, summary.sim_time_s
+    );
+    let told = scenario.name == "experiment-1";
+    if told || !summary.avoidances.is_empty() {
+        println!("{}", avoidances(summary, told));
+    }
+    let metres = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), |x| format!("{x:.4} m"));
+    let mut figures = Table::new();
+    figures.load_style(UTF8_FULL_CONDENSED);
+    figures.set_header(["figure", "value"]);
+    figures.add_row([
+        "reached the end",
+        if summary.reached_end { "yes" } else { "no" },
+    ]);
+    figures.add_row([
+        "cross-track RMS, free stretches",
+        &metres(summary.cross_track_rms_m),
+    ]);
+    figures.add_row([
+        "cross-track maximum, free stretches",
+        &metres(summary.cross_track_max_m),
+    ]);
+    figures.add_row(["minimum clearance", &metres(summary.min_clearance_m)]);
+    figures.add_row(["collisions", &summary.collisions.to_string()]);
+    figures.add_row(["mean speed", &format!("{:.3} m/s", summary.mean_speed_mps)]);
+    figures.add_row([
+        "odometry error at the end",
+        &metres(Some(summary.odometry_error_m)),
+    ]);
+    println!("{figures}");
+}
+
+fn avoidances(summary: &Summary, told: bool) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    let mut header = vec![
+        "obstacle",
+        "turned",
+        "steps",
+        "path then at",
+        "steps to regain",
+    ];
+    if told {
+        header.extend(["chapter: turned", "steps", "to regain"]);
+    }
+    table.set_header(header);
+    let steps = |n: Option<u64>| n.map_or_else(|| "–".to_owned(), |n| n.to_string());
+    for pass in &summary.avoidances {
+        let mut row = vec![
+            pass.obstacle.clone(),
+            pass.side.to_owned(),
+            pass.steps.to_string(),
+            format!("{:.2} m", pass.distance_at_end_m),
+            steps(pass.regain_steps),
+        ];
+        if told {
+            match STORY.iter().find(|s| s.0 == pass.obstacle) {
+                Some((_, side, passed, regain)) => {
+                    row.extend([(*side).to_owned(), passed.to_string(), steps(*regain)]);
+                }
+                None => row.extend(["–".to_owned(), "–".to_owned(), "–".to_owned()]),
+            }
+        }
+        table.add_row(row);
+    }
+    for (name, side, passed, regain) in STORY
+        .iter()
+        .filter(|s| told && !summary.avoidances.iter().any(|pass| pass.obstacle == s.0))
+    {
+        table.add_row([
+            *name,
+            "not met",
+            "–",
+            "–",
+            "–",
+            side,
+            &passed.to_string(),
+            &steps(*regain),
+        ]);
+    }
+    table
+}
