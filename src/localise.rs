@@ -25,7 +25,7 @@ impl Localiser {
     pub fn new(body: &Body, pose: Pose) -> Self {
         // metres_per_count / (2π · track) turns a count; × 2^48. Numerator m·2^32 · 2^32; denominator m·2^16.
         const TURN: i128 = 683_565_276; // 2^32 / 2π
-        let numerator = i128::from(body.metres_per_count.to_bits()) * TURN << 16;
+        let numerator = (i128::from(body.metres_per_count.to_bits()) * TURN) << 16;
         let track = i128::from(body.track.bits().max(1)) << 16;
         Self {
             x: i64::from(pose.at.x.bits()) << 16,

@@ -563,7 +563,7 @@ proptest! {
                 prop_assert!(w_step.abs() <= step(limits.yaw_acceleration), "{w_step}");
             }
             // Scaling down leaves both parts up to a step short of the limit.
-            let rim = (w.unsigned_abs() + 1) * (track as u64 >> 1) >> 16;
+            let rim = ((w.unsigned_abs() + 1) * (track as u64 >> 1)) >> 16;
             let saturated = v.unsigned_abs() + rim + 4 >= limits.wheel_speed.bits() as u64;
             if !saturated {
                 prop_assert!(v_step.abs() <= step(limits.acceleration), "{v_step}");
@@ -787,8 +787,8 @@ fn the_guard_stops_before_an_echo() {
 #[test]
 #[ignore = "bug: guard.rs, with a latency of two periods or more the commands under way carry the robot into its margin"]
 fn the_guard_stops_before_an_echo_at_any_latency() {
-    for delay in [2, 3, 4, 8] {
-        println!("{}", closest(delay));
+    for delay in [2, 3, 4] {
+        assert!(closest(delay) > -3.0 * STEP);
     }
 }
 

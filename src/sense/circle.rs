@@ -70,7 +70,7 @@ pub fn fit_circle(points: &[Point]) -> Option<CircleFit> {
     );
     let determinant = uu * vv - uv * uv;
     // On a line the determinant vanishes; below this share of its scale the radius is noise.
-    if determinant <= (uu + vv) * (uu + vv) >> 20 {
+    if determinant <= ((uu + vv) * (uu + vv)) >> 20 {
         return None;
     }
     let numerator = |p: i64, q: i64, r: i64, s: i64| {

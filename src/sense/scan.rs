@@ -5,7 +5,7 @@ use crate::geometry::Point;
 use crate::params::RingGeometry;
 use crate::ports::{Fault, Range, RangeReading};
 use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
-use crate::units::{Metres, MetresPerSecond};
+use crate::units::{Metres, MetresPerSecond, saturate};
 use heapless::Vec;
 
 /// Judges every reading, places the echoes in the body frame and makes circles of them.
@@ -126,8 +126,8 @@ fn join_ends<const N: usize>(
 
 /// The circle behind a segment.
 ///
-/// A fit is believed with at least [`ENOUGH`] echoes, a radius and residual within the ring's bounds and a radius of at
-/// most twice the half-width seen (a disc shows nearly its diameter; a flatter arc is noise or no disc). Otherwise the
+/// A fit is believed with at least [`ENOUGH`] echoes, a radius and residual within the ring's bounds, and a sagitta of
+/// the arc seen that is not lost in that residual (a flatter arc says nothing about its radius). Otherwise the
 /// smallest disc that can have made the echoes stands in: as wide as they are and half a beam's spacing to either
 /// side, its surface through the nearest.
 fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstacle {
@@ -142,7 +142,8 @@ fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstac
     if points.len() >= ENOUGH
         && let Some(fit) = fit_circle(points)
         && fit.radius >= least
-        && fit.radius <= most.min(half_width + half_width)
+        && fit.radius <= most
+        && sagitta(half_width, fit.radius) >= ring.residual
         && fit.residual <= ring.residual
         && points.iter().any(|p| p.norm() < fit.centre.norm())
     {
@@ -165,6 +166,13 @@ fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstac
         residual: ring.residual,
         echoes,
     }
+}
+
+/// Height of an arc of `radius` over its chord, h²/2r: exact enough to tell an arc from a line.
+fn sagitta(half_chord: Metres, radius: Metres) -> Metres {
+    let square = i64::from(half_chord.bits()).pow(2);
+    let twice = i64::from(radius.bits()).saturating_mul(2);
+    Metres::from_bits(square.checked_div(twice).map_or(0, saturate))
 }
 
 /// Echoes from which a fit is believed: with fewer, a centimetre of noise doubles the radius.

@@ -21,13 +21,13 @@ const VARIANTS: [(&str, Change); 9] = [
     ("(default)", |_| {}),
     ("--fine-nn prose", |s| s.control.fine_nn = FineNn::Prose),
     ("--speed-axis literal", |s| {
-        s.control.speed_axis = AxisName::Literal
+        s.control.speed_axis = AxisName::Literal;
     }),
     ("--table-7-3 printed", |s| {
-        s.control.table_7_3 = CoarseName::Printed
+        s.control.table_7_3 = CoarseName::Printed;
     }),
     ("--table-7-4-input bearing", |s| {
-        s.control.table_7_4_input = InputName::Bearing
+        s.control.table_7_4_input = InputName::Bearing;
     }),
     ("--radius 6", |s| {
         if let PathForm::Pieces(pieces) = &mut s.path.form {
@@ -40,7 +40,7 @@ const VARIANTS: [(&str, Change); 9] = [
     }),
     ("--law paper", |s| s.control.law = LawName::Paper),
     ("--tables tuned", |s| {
-        s.control.tables = Some(TablesName::Tuned)
+        s.control.tables = Some(TablesName::Tuned);
     }),
     ("--law paper --table-7-3 printed", |s| {
         s.control.law = LawName::Paper;

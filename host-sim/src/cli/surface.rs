@@ -84,7 +84,7 @@ where
             (term, table.peak(row, col).into())
         })
         .collect();
-    found.sort_by(|a, b| a.0.cmp(&b.0));
+    found.sort_by_key(|(term, _)| *term);
     found.dedup_by_key(|(term, _)| *term);
     found
         .into_iter()

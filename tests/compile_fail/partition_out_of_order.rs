@@ -1,0 +1,11 @@
+//! A partition's peaks ascend.
+use fixed::types::I16F16;
+use fuzzypilot::fuzzy::Partition;
+
+pub static DISTANCE: Partition<3> = Partition::new([
+    I16F16::lit("0"),
+    I16F16::lit("2"),
+    I16F16::lit("1"),
+]);
+
+fn main() {}

@@ -1,0 +1,14 @@
+//! Every pair of input terms needs a rule.
+use fixed::types::I8F8;
+use fuzzypilot::fuzzy::{Consequents, RuleTable, Term};
+
+const S: Term = Term(0);
+const B: Term = Term(1);
+const HOLE: Term = Term::HOLE;
+
+pub static SPEED: RuleTable<2, 3, I8F8> = RuleTable::new(
+    [[S, B, B], [S, HOLE, B]],
+    Consequents::new([I8F8::lit("0"), I8F8::lit("3")], [I8F8::lit("1"), I8F8::lit("2")]),
+);
+
+fn main() {}

@@ -1,0 +1,14 @@
+//! A rule concludes a term that the output has.
+use fixed::types::I8F8;
+use fuzzypilot::fuzzy::{Consequents, RuleTable, Term};
+
+const S: Term = Term(0);
+const B: Term = Term(1);
+const VB: Term = Term(2);
+
+pub static SPEED: RuleTable<2, 2, I8F8> = RuleTable::new(
+    [[S, B], [B, VB]],
+    Consequents::new([I8F8::lit("0"), I8F8::lit("3")], [I8F8::lit("1"), I8F8::lit("2")]),
+);
+
+fn main() {}

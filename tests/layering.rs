@@ -1,0 +1,300 @@
+//! The import rules, held by reading `src/` as text: the engine knows no other module, the stages of a tick do not know
+//! each other, and nothing needs std, floats or the simulator.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The stages of a tick; they meet in `signals` only, and only `tick` knows them all.
+const STAGES: [&str; 6] = ["sense", "localise", "guide", "behaviour", "guard", "drive"];
+
+/// Imports against the rule that stand in the code: (file, the stage's item it names). Shrink it; never add to it
+/// without a reason beside the entry.
+const EXCEPTIONS: &[(&str, &str)] = &[
+    // β is geometry, and lives with the avoider.
+    ("supervisor.rs", "behaviour"),
+    // The most beams of a ring, a bound that `Params::checked` asserts.
+    ("params.rs", "sense"),
+];
+
+/// A source file: its path below `src/` and its code without comments and strings.
+struct Source {
+    path: String,
+    code: String,
+}
+
+impl Source {
+    /// The top module that the file belongs to: `fuzzy` for `fuzzy.rs` and `fuzzy/rules.rs`.
+    fn module(&self) -> &str {
+        let first = self.path.split('/').next().unwrap_or_default();
+        first.strip_suffix(".rs").unwrap_or(first)
+    }
+
+    /// How many modules deep the file is below the crate: 1 for `fuzzy.rs`, 2 for `fuzzy/rules.rs`.
+    fn depth(&self) -> usize {
+        self.path.split('/').count()
+    }
+}
+
+/// Strips comments, and what strings and characters hold.
+fn code_of(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        if rest.starts_with("//") {
+            rest = &rest[rest.find('\n').unwrap_or(rest.len())..];
+        } else if rest.starts_with("/*") {
+            rest = &rest[rest.find("*/").map_or(rest.len(), |end| end + 2)..];
+        } else if c == '"' {
+            let mut end = 1;
+            let bytes = rest.as_bytes();
+            while end < bytes.len() && bytes[end] != b'"' {
+                end += if bytes[end] == b'\\' { 2 } else { 1 };
+            }
+            out.push_str("\"\"");
+            rest = &rest[(end + 1).min(rest.len())..];
+        } else {
+            out.push(c);
+            rest = &rest[c.len_utf8()..];
+        }
+    }
+    out
+}
+
+fn walk(folder: &Path, root: &Path, sources: &mut Vec<Source>) {
+    let mut entries: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    entries.sort();
+    for entry in entries {
+        if entry.is_dir() {
+            walk(&entry, root, sources);
+        } else if entry.extension().is_some_and(|e| e == "rs") {
+            let parts: Vec<_> = entry.strip_prefix(root).unwrap().iter().collect();
+            let parts: Vec<_> = parts.iter().map(|p| p.to_string_lossy()).collect();
+            sources.push(Source {
+                path: parts.join("/"),
+                code: code_of(&fs::read_to_string(&entry).unwrap()),
+            });
+        }
+    }
+}
+
+fn sources() -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut sources = Vec::new();
+    walk(&root, &root, &mut sources);
+    assert!(sources.len() > 20, "src/ was not found");
+    sources
+}
+
+/// Words of the code: identifiers, and everything else a character at a time, blanks dropped.
+fn words(code: &str) -> Vec<&str> {
+    let mut words = Vec::new();
+    let mut rest = code.trim_start();
+    while let Some(c) = rest.chars().next() {
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let end = if is_word(c) {
+            rest.find(|c| !is_word(c)).unwrap_or(rest.len())
+        } else {
+            c.len_utf8()
+        };
+        words.push(&rest[..end]);
+        rest = rest[end..].trim_start();
+    }
+    words
+}
+
+/// The names that directly follow `::` at `at`, one or a braced list of them: `a` of `a::b`, `a` and `c` of
+/// `{a::b, c}`.
+fn roots<'a>(words: &[&'a str], mut at: usize) -> Vec<&'a str> {
+    if words.get(at..at + 2) != Some(&[":", ":"]) {
+        return Vec::new();
+    }
+    at += 2;
+    if words.get(at) != Some(&"{") {
+        return words.get(at).copied().into_iter().collect();
+    }
+    let (mut found, mut depth, mut fresh) = (Vec::new(), 0, false);
+    for &word in &words[at..] {
+        match word {
+            "{" => {
+                depth += 1;
+                fresh = depth == 1;
+            }
+            "}" => {
+                depth -= 1;
+                if depth == 0 {
+                    break;
+                }
+            }
+            "," => fresh = depth == 1,
+            _ if fresh => {
+                found.push(word);
+                fresh = false;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The crate's top modules that a file names, by `crate::` or by enough `super::`, in a `use` or in a path.
+fn named(source: &Source) -> BTreeSet<&str> {
+    let words = words(&source.code);
+    let mut names = BTreeSet::new();
+    for i in 0..words.len() {
+        if matches!(words[i], "crate" | "fuzzypilot") {
+            names.extend(roots(&words, i + 1));
+        }
+        // The first of a chain of as many `super` as lead up to the crate.
+        if words[i] == "super" && (i == 0 || words[i - 1] != ":") {
+            let mut supers = 1;
+            while words.get(i + 3 * supers) == Some(&"super") && words[i + 3 * supers - 1] == ":" {
+                supers += 1;
+            }
+            if supers >= source.depth() {
+                names.extend(roots(&words, i + 3 * (supers - 1) + 1));
+            }
+        }
+    }
+    names
+}
+
+/// Every breach of the rules, as "file names what".
+fn breaches(sources: &[Source]) -> Vec<String> {
+    let mut found = Vec::new();
+    for source in sources {
+        let own = source.module();
+        for name in named(source) {
+            let breach = match own {
+                // The engine knows nothing but itself.
+                "fuzzy" => name != "fuzzy",
+                // The tick and the root know everything.
+                "tick" | "lib" => false,
+                // The tables know the engine alone.
+                "tables" => !matches!(name, "tables" | "fuzzy"),
+                // Units and geometry are below everything.
+                "units" => name != "units",
+                "geometry" => !matches!(name, "geometry" | "units"),
+                _ => {
+                    (STAGES.contains(&name) || matches!(name, "tick" | "supervisor")) && name != own
+                }
+            };
+            if breach && !EXCEPTIONS.contains(&(source.path.as_str(), name)) {
+                found.push(format!("{} names {name}", source.path));
+            }
+        }
+        // In the code, comments and strings aside.
+        let words = words(&source.code);
+        for foreign in ["host_sim", "std", "alloc", "f16", "f32", "f64", "f128"] {
+            if words.contains(&foreign) {
+                found.push(format!("{} names {foreign}", source.path));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn modules_import_only_what_they_may() {
+    let found = breaches(&sources());
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn every_exception_is_still_needed() {
+    let sources = sources();
+    for &(path, name) in EXCEPTIONS {
+        let source = sources.iter().find(|s| s.path == path);
+        let source = source.unwrap_or_else(|| panic!("{path} is gone"));
+        assert!(named(source).contains(name), "{path} does not name {name}");
+    }
+}
+
+#[test]
+fn only_the_tick_knows_all_stages() {
+    for source in sources() {
+        let names = named(&source);
+        let all = STAGES.iter().all(|stage| names.contains(stage));
+        assert_eq!(all, source.path == "tick.rs", "{}", source.path);
+    }
+}
+
+#[test]
+fn the_root_is_no_std() {
+    let sources = sources();
+    let root = sources.iter().find(|s| s.path == "lib.rs").unwrap();
+    assert!(root.code.contains("#![no_std]"));
+    assert!(!root.code.contains("extern crate"));
+}
+
+/// The rules can fail: each made-up file breaks one.
+#[test]
+fn breaches_are_seen() {
+    let bad = [
+        ("fuzzy/rules.rs", "use crate::units::Angle;", "units"),
+        ("fuzzy/rules.rs", "use super::super::units::Angle;", "units"),
+        ("fuzzy.rs", "use super::{fuzzy, params};", "params"),
+        ("fuzzy.rs", "fn f(x: crate::signals::Twist) {}", "signals"),
+        (
+            "guide/law.rs",
+            "use crate::{\n    units::{Angle, drive},\n    drive::drive,\n};",
+            "drive",
+        ),
+        ("guide/law.rs", "use crate :: guard :: guard;", "guard"),
+        (
+            "drive.rs",
+            "fn f() { crate::localise::Localiser::pose(); }",
+            "localise",
+        ),
+        (
+            "sense/scan.rs",
+            "use super::super::behaviour::avoider;",
+            "behaviour",
+        ),
+        ("localise.rs", "use crate::supervisor::Mode;", "supervisor"),
+        ("params.rs", "use crate::tick::Robot;", "tick"),
+        ("tables/fine.rs", "use crate::params::Law;", "params"),
+        ("geometry.rs", "use crate::signals::Obstacle;", "signals"),
+        ("guard.rs", "use std::vec::Vec;", "std"),
+        ("guard.rs", "let x = 1.0 as f32;", "f32"),
+        ("guard.rs", "use host_sim::World;", "host_sim"),
+    ];
+    for (path, code, name) in bad {
+        let source = Source {
+            path: path.into(),
+            code: code_of(code),
+        };
+        assert_eq!(
+            breaches(&[source]),
+            [format!("{path} names {name}")],
+            "{code}"
+        );
+    }
+    let good = [
+        (
+            "fuzzy/rules.rs",
+            "use super::{Activation, Grade}; // crate::units",
+        ),
+        ("fuzzy/rules.rs", "use crate::fuzzy::Grade; /* f64 */"),
+        (
+            "guide/law.rs",
+            "use super::cursor::Cursor; use crate::guide::Path;",
+        ),
+        (
+            "guide/law.rs",
+            "use crate::{units::{Angle, drive}, geometry::Pose};",
+        ),
+        ("guard.rs", "panic!(\"crate::drive, std, f32\");"),
+        ("tick.rs", "use crate::{drive, guard, sense};"),
+    ];
+    for (path, code) in good {
+        let source = Source {
+            path: path.into(),
+            code: code_of(code),
+        };
+        assert_eq!(breaches(&[source]), [""; 0], "{code}");
+    }
+}
