@@ -1,5 +1,58 @@
 #![no_std]
-//! fuzzypilot
+//! A fuzzy controller that drives a differential robot along a path and around obstacles: `no_std`, no allocation,
+//! fixed point, the same bits on every architecture.
+//!
+//! It implements the two-level scheme of *Path Following and Obstacle Avoidance Control Based on Different Fuzzy
+//! Grains* (Proceedings of the 2015 Chinese Intelligent Automation Conference, doi 10.1007/978-3-662-46463-2_7), its
+//! errata named and selectable, and adds a guidance law that converges on any path.
+//!
+//! # One tick
+//!
+//! ```text
+//!  ports ─▶ sense ─▶ localise ─▶ guide ─▶ supervise ─▶ behave ─▶ guard ─▶ drive ─▶ ports
+//!           echoes   pose        where    follow,      fuzzy     brakes   limits,
+//!           circles              to head  avoid, stop  tables    only     wheels
+//! ```
+//!
+//! [`tick::Robot::tick`] is that line in code. Stages never see each other; they pass the records of [`signals`].
+//! Settings live in [`params`] (start from [`presets`]), hardware behind the traits of [`ports`]. [`fuzzy`] knows
+//! nothing of robots and can be used alone.
+//!
+//! # Frames, signs, units
+//!
+//! x forward, y left, counter-clockwise positive (ROS REP 103); metres, seconds, radians. Angles are binary inside: a
+//! full turn is 2³², so wrap-around is free ([`units`]). The chapter's own signs (θ, Δθ clockwise positive) exist inside
+//! [`tables::coarse`] only; the avoider converts once.
+//!
+//! # Example
+//!
+//! ```
+//! use fuzzypilot::{geometry::Pose, guide::{Path, Segment}, ports::*, presets, tick::Robot, units::*};
+//!
+//! struct Wheels;                                            // your motor driver
+//! impl WheelDrive for Wheels {
+//!     type Error = core::convert::Infallible;
+//!     fn set_speed(&mut self, _: Side, _: MetresPerSecond) -> Result<(), Self::Error> { Ok(()) }
+//! }
+//! struct Encoders;                                          // your counters
+//! impl WheelEncoders for Encoders {
+//!     fn counts(&mut self) -> Result<WheelCounts, Fault> { Ok(WheelCounts { left: 0, right: 0 }) }
+//! }
+//! struct Ranges;                                            // your range sensors
+//! impl RangeSensors<8> for Ranges {
+//!     fn ranges(&mut self) -> [RangeReading; 8] { [RangeReading::fresh(Range::Clear); 8] }
+//! }
+//!
+//! let params = presets::small_robot::<8>().checked()?;
+//! let line = [Segment::line(Pose::default(), Metres::lit("5"))];
+//! let path = Path::segments(&line, false)?;
+//! let mut robot = Robot::new(params, Pose::default());
+//! let mut ports = Ports { drive: Wheels, encoders: Encoders, ranges: Ranges };
+//! let record = robot.tick(&path, &mut ports);               // every 50 ms
+//! assert!(record.twist.linear > MetresPerSecond::ZERO);     // off it goes
+//! # Ok::<(), Box<dyn core::error::Error>>(())
+//! ```
+
 pub mod behaviour;
 pub mod drive;
 pub mod fuzzy;
@@ -9,6 +62,7 @@ pub mod guide;
 pub mod localise;
 pub mod params;
 pub mod ports;
+pub mod presets;
 pub mod sense;
 pub mod signals;
 pub mod supervisor;

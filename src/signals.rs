@@ -3,7 +3,7 @@
 //! Frames: *world* is the odometry frame, in which the path is given too; *body* is the robot's, x forward, y left.
 
 use crate::fuzzy::FiredRule;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, leg};
 use crate::ports::Fault;
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
 use heapless::Vec;
@@ -34,6 +34,17 @@ impl Obstacle {
     /// From the robot's rim to the obstacle's surface: the chapter's s. Not below zero.
     pub fn free_distance(&self, robot_radius: Metres) -> Metres {
         (self.centre.norm() - self.radius - robot_radius).max(Metres::ZERO)
+    }
+
+    /// β/2 of the chapter's unfeasible region: half the angle that the obstacle, its radius grown by `grown`, subtends.
+    /// A quarter turn when the robot is inside the grown circle.
+    pub fn unfeasible_half_angle(&self, grown: Metres) -> Angle {
+        let reach = self.radius + grown;
+        let distance = self.centre.norm();
+        if distance <= reach {
+            return Angle::QUARTER;
+        }
+        Angle::of(leg(distance, reach).bits(), reach.bits())
     }
 }
 

@@ -1,7 +1,6 @@
 //! The higher level: which sub-task runs. Thresholds, dwell and side commitment are assumed; the chapter gives none,
 //! and with a single threshold robots chatter.
 
-use crate::behaviour::avoider::unfeasible_half_angle;
 use crate::geometry::{Point, Pose};
 use crate::params::{Avoider, Supervisor};
 use crate::signals::{Decision, Guidance, Obstacle, Sensed, StopReason, Travel, Turn};
@@ -240,7 +239,7 @@ impl SupervisorState {
             Turn::Right => angle,
             Turn::Left => -angle,
         };
-        let needed = unfeasible_half_angle(&held.obstacle, grown) + params.clear;
+        let needed = held.obstacle.unfeasible_half_angle(grown) + params.clear;
         let bearing = held.obstacle.bearing();
         let way = mirror(bearing - now.guidance.heading_error);
         let heading = mirror(bearing);
@@ -274,7 +273,7 @@ fn threat(params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) -> Option
     let grown = now.robot_radius + Metres::from_bits(avoider.margin.bits() >> 1);
     now.sensed.obstacles.iter().copied().find(|obstacle| {
         let free = obstacle.free_distance(now.robot_radius);
-        let half = unfeasible_half_angle(obstacle, grown);
+        let half = obstacle.unfeasible_half_angle(grown);
         let covers = |way: Angle| (obstacle.bearing() - way).abs().bits() < half.bits();
         let near = Metres::from_bits(params.enter.bits() >> 1);
         // What stands beyond the path's end is nobody's business.

@@ -8,6 +8,7 @@ mod run;
 mod surface;
 mod sweep;
 
+use anyhow::Context;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use host_sim::params::{
     AxisName, CoarseName, FineNn, InputName, IntegratorName, LawName, TablesName,
@@ -15,13 +16,23 @@ use host_sim::params::{
 use host_sim::run::RunError;
 use host_sim::scenario::{PathForm, Scenario, ScenarioError};
 use host_sim::track::Piece;
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 /// Desktop simulator around fuzzypilot's own tick. Without a command it runs the chapter's Experiment 1.
 #[derive(Parser)]
-#[command(version, about, max_term_width = 100)]
+#[command(
+    version,
+    about,
+    max_term_width = 100,
+    args_conflicts_with_subcommands = true
+)]
 pub struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
+    #[command(flatten, next_help_heading = "Options without a command")]
+    options: run::Options,
 }
 
 #[derive(Subcommand)]
@@ -45,7 +56,7 @@ enum Command {
 /// Carries out a command line.
 pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
     match arguments.command {
-        None => run::execute(&run::RunArguments::default()),
+        None => run::execute(&run::RunArguments::experiment_1(arguments.options)),
         Some(Command::Run(arguments)) => run::execute(&arguments),
         Some(Command::List(arguments)) => list::execute(&arguments),
         Some(Command::Eval(arguments)) => eval::execute(&arguments),
@@ -85,7 +96,7 @@ pub struct Variants {
     #[arg(long, value_enum)]
     tables: Option<TablesName>,
     /// Radius of every arc of the path, m (erratum: Experiment 1 prints 6; only 8 makes its arcs meet).
-    #[arg(long, value_parser = radius)]
+    #[arg(long, value_parser = number(LEAST_RADIUS, MOST_RADIUS), allow_hyphen_values = true)]
     radius: Option<f64>,
     /// Erratum, Table 7.2 at (d = N, phi = N): the table's N or the prose's B. Printed tables only.
     #[arg(long, value_enum)]
@@ -107,11 +118,65 @@ pub struct Variants {
     odometry: Option<Odometry>,
 }
 
-fn radius(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(r) if r > 0.0 && r <= 1000.0 => Ok(r),
-        _ => Err("allowed is a number above 0, at most 1000".to_owned()),
+const LEAST_RADIUS: f64 = 0.01;
+const MOST_RADIUS: f64 = 1000.0;
+
+/// Reads a number within limits; neither NaN nor infinity is.
+pub fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match text.parse::<f64>() {
+        Ok(x) if x >= least && x <= most => Ok(x),
+        _ => Err(format!("allowed is a number from {least} to {most}")),
     }
+}
+
+/// Reads a whole number within limits.
+pub fn whole(least: u64, most: u64) -> impl Fn(&str) -> Result<u64, String> + Clone {
+    move |text| match text.parse::<u64>() {
+        Ok(n) if n >= least && n <= most => Ok(n),
+        _ => Err(format!("allowed is a whole number from {least} to {most}")),
+    }
+}
+
+/// Prints to standard output. Whoever reads it may have seen enough (`host-sim list | head -1`).
+pub fn print(text: impl Display) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match write!(out, "{text}").and_then(|()| out.flush()) {
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
+        done => done.context("standard output: cannot be written"),
+    }
+}
+
+/// Refuses a folder that is a file, or lies under one.
+pub fn check_folder(folder: &Path) -> Result<(), BadInput> {
+    let above = folder.ancestors().find(|p| p.symlink_metadata().is_ok());
+    match above {
+        Some(file) if !file.is_dir() => Err(BadInput(format!(
+            "--out {}: {} is a file; allowed is a folder, existing or new",
+            folder.display(),
+            file.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a file whole or not at all.
+pub fn put(file: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    // What a link or a device leads to is written as it is: a rename would put a file in its place.
+    let special = file.symlink_metadata().is_ok_and(|m| !m.is_file());
+    let done = if special {
+        std::fs::write(file, bytes)
+    } else {
+        let mut partial = file.as_os_str().to_owned();
+        partial.push(format!(".{}.tmp", std::process::id()));
+        let partial = PathBuf::from(partial);
+        let done = std::fs::write(&partial, bytes).and_then(|()| std::fs::rename(&partial, file));
+        if done.is_err() {
+            // Best effort: the error that matters is the one above.
+            let _ = std::fs::remove_file(&partial);
+        }
+        done
+    };
+    done.with_context(|| format!("{}: cannot be written", file.display()))
 }
 
 impl Variants {
@@ -128,9 +193,13 @@ impl Variants {
         let tuned =
             control.fine_set(scenario.robot.preset) == fuzzypilot::tables::fine::FineSet::Tuned;
         if tuned && control.fine_nn == FineNn::Prose {
-            return Err(BadInput(
-                "--fine-nn prose: the tuned tables have no such erratum; allowed with --tables printed".into(),
-            ));
+            let what = match self.fine_nn {
+                Some(_) => "--fine-nn prose".to_owned(),
+                None => format!("{}: control.fine-nn: found prose", scenario.name),
+            };
+            return Err(BadInput(format!(
+                "{what}: the tuned tables have no such erratum; allowed with the printed tables"
+            )));
         }
         match self.odometry {
             None => {}
@@ -168,6 +237,6 @@ impl Variants {
 pub fn load(name: &str, variants: &Variants) -> anyhow::Result<Scenario> {
     let mut scenario = host_sim::scenario::load(name)?;
     variants.apply(&mut scenario)?;
-    host_sim::run::check(&scenario)?;
+    host_sim::run::check(&scenario).map_err(|e| BadInput(format!("{name}: {e}")))?;
     Ok(scenario)
 }

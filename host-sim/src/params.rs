@@ -7,8 +7,10 @@ use clap::ValueEnum;
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::params as lib;
 use fuzzypilot::params::{Body, Follower, Guard, Limits, Mount, Params, RingGeometry, Supervisor};
+use fuzzypilot::presets;
 use fuzzypilot::tables::coarse::{CoarseSet, SpeedInput};
 use fuzzypilot::tables::fine::{FineSet, SpeedAxis};
+use fuzzypilot::units::Metres;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -186,62 +188,51 @@ impl Control {
     }
 }
 
-/// Encoder resolution of exact odometry, m: what wheel travel loses by it is below a micrometre.
-const METRES_PER_COUNT: f64 = 1.0 / 1_048_576.0;
-
 impl Preset {
+    /// The library's settings behind the preset.
+    fn base<const N: usize>(self) -> Params<N> {
+        match self {
+            Self::Chapter => presets::chapter_robot(),
+            Self::Small => presets::small_robot(),
+        }
+    }
+
     /// Body, limits and timing.
     pub fn robot(self) -> RobotSpec {
-        match self {
-            // Radius and top speed given; one step a second, so that "0.3" is both speed and step (assumed); yaw and
-            // acceleration limits let a step do all that equation 7.1 asks for.
-            Self::Chapter => RobotSpec {
-                preset: self,
-                radius: 0.2,
-                track: 0.3,
-                speed: 0.3,
-                yaw_rate: 1.6,
-                acceleration: 0.3,
-                yaw_acceleration: 3.2,
-                wheel_speed: 0.6,
-                period: 1.0,
-                latency: 0.0,
-                lag: 0.0,
-            },
-            Self::Small => RobotSpec {
-                preset: self,
-                radius: 0.10,
-                track: 0.16,
-                speed: 1.0,
-                yaw_rate: 4.0,
-                acceleration: 2.5,
-                yaw_acceleration: 8.0,
-                wheel_speed: 1.3,
-                period: 0.05,
-                latency: 0.05,
-                lag: 0.0,
-            },
+        let base = self.base::<8>();
+        let number = |x: fixed::types::I16F16| tidy(x.to_num());
+        RobotSpec {
+            preset: self,
+            radius: tidy(si::from_metres(base.body.radius)),
+            track: tidy(si::from_metres(base.body.track)),
+            speed: tidy(si::from_speed(base.limits.speed)),
+            yaw_rate: number(base.limits.yaw_rate),
+            acceleration: number(base.limits.acceleration),
+            yaw_acceleration: number(base.limits.yaw_acceleration),
+            wheel_speed: tidy(si::from_speed(base.limits.wheel_speed)),
+            period: tidy(base.period.get().to_num()),
+            latency: tidy(base.latency.get().to_num()),
+            lag: 0.0,
         }
     }
 
-    /// The sensor ring.
+    /// The sensor ring: beams all round.
     pub fn sensors(self) -> SensorSpec {
-        match self {
-            // D = 4: the chapter's D̄, and the distance at which the story lets the robot return.
-            Self::Chapter => SensorSpec {
-                count: 64,
-                field_of_view: TAU,
-                range: 4.0,
-                width: 0.0,
+        SensorSpec {
+            count: match self {
+                Self::Chapter => 64,
+                Self::Small => 32,
             },
-            Self::Small => SensorSpec {
-                count: 32,
-                field_of_view: TAU,
-                range: 2.0,
-                width: 0.0,
-            },
+            field_of_view: TAU,
+            range: tidy(si::from_metres(self.base::<8>().ring.max_range)),
+            width: 0.0,
         }
     }
+}
+
+/// The decimal number that a fixed-point setting was written as.
+fn tidy(x: f64) -> f64 {
+    (x * 1e4).round() / 1e4
 }
 
 /// Sensors spread evenly over the field of view, counter-clockwise, mounted at the robot's centre.
@@ -263,19 +254,24 @@ pub fn beams(sensors: &SensorSpec) -> Vec<BeamView> {
         .collect()
 }
 
-/// The library's settings for a scenario.
+/// The library's settings for a scenario: its preset, with what the scenario says and what follows from that.
 pub fn params<const N: usize>(scenario: &Scenario) -> Result<Params<N>, lib::ParamError> {
     let robot = &scenario.robot;
     let sensors = &scenario.sensors;
     let control = &scenario.control;
     let beams = beams(sensors);
+    let base: Params<N> = robot.preset.base();
+    // Thresholds that are shares of the range keep their share.
+    let share = sensors.range / si::from_metres(base.ring.max_range);
+    let stretched = |x: Metres| si::metres(si::from_metres(x) * share);
+    let per_tick =
+        si::from_number(base.follower.deflection_rate) * base.period.get().to_num::<f64>();
     let chapter = robot.preset == Preset::Chapter;
-    let pick = |for_chapter: f64, for_small: f64| if chapter { for_chapter } else { for_small };
     Params {
         body: Body {
             radius: si::metres(robot.radius),
             track: si::metres(robot.track),
-            metres_per_count: si::fine_metres(METRES_PER_COUNT),
+            ..base.body
         },
         limits: Limits {
             speed: si::speed(robot.speed),
@@ -301,9 +297,7 @@ pub fn params<const N: usize>(scenario: &Scenario) -> Result<Params<N>, lib::Par
             closed: sensors.field_of_view >= TAU - 1e-9,
             max_range: si::metres(sensors.range),
             max_age: si::seconds((3.0 * robot.period).max(0.2)),
-            gap: si::metres(pick(0.8, 0.35)),
-            radius: [si::metres(0.05), si::metres(pick(4.0, 2.0))],
-            residual: si::metres(pick(0.05, 0.03)),
+            ..base.ring
         },
         follower: Follower {
             law: match control.law {
@@ -315,37 +309,35 @@ pub fn params<const N: usize>(scenario: &Scenario) -> Result<Params<N>, lib::Par
                 AxisName::Scaled => SpeedAxis::Scaled,
                 AxisName::Literal => SpeedAxis::Literal,
             },
-            distance_scale: si::number(pick(1.0, 10.0)),
-            // Equation 7.1 turns the whole deflection in one step.
-            deflection_rate: si::number(pick(1.0 / robot.period, 4.952)),
-            approach_gain: si::per_metre(2.0),
-            approach_angle: si::angle(1.2),
-            feed_forward_band: si::metres(0.3),
-            lateral_acceleration: si::number(3.0),
-            corner_speed: si::speed(0.3_f64.min(robot.speed)),
-            reach: si::metres(pick(4.0, 0.5)),
-            arrival: si::metres(pick(0.1, 0.02)),
+            // Equation 7.1 turns the whole deflection in one step, whatever the step.
+            deflection_rate: if chapter {
+                si::number(per_tick / robot.period)
+            } else {
+                base.follower.deflection_rate
+            },
+            corner_speed: base.follower.corner_speed.min(si::speed(robot.speed)),
+            ..base.follower
         },
         avoider: lib::Avoider {
             tables: control.coarse_set(),
             speed_input: control.speed_input(),
             range: si::metres(sensors.range),
-            margin: si::metres(pick(0.2, 0.08)),
-            deflection_rate: si::number(pick(1.0 / robot.period, 2.5)),
-            overshoot: si::angle(0.35),
+            deflection_rate: if chapter {
+                si::number(per_tick / robot.period)
+            } else {
+                base.avoider.deflection_rate
+            },
+            ..base.avoider
         },
         supervisor: Supervisor {
-            enter: si::metres(sensors.range * pick(0.6, 0.4)),
-            exit: si::metres(sensors.range * pick(0.9, 0.7)),
-            dwell: 3,
-            clear: si::angle(0.1),
-            tie: si::angle(0.02),
-            same: si::metres(pick(1.0, 0.3)),
+            enter: stretched(base.supervisor.enter),
+            exit: stretched(base.supervisor.exit),
             patience: (0.3 / robot.period).ceil().max(3.0) as u16,
+            ..base.supervisor
         },
         guard: Guard {
-            margin: si::metres(pick(0.05, 0.03)),
             braking: si::number(robot.acceleration),
+            ..base.guard
         },
     }
     .checked()

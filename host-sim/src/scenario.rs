@@ -7,6 +7,8 @@ use crate::sensors::Noise;
 use crate::track::{Piece, Track};
 use crate::world::World;
 use serde::Deserialize;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 use toml::Spanned;
 
@@ -210,14 +212,40 @@ pub fn load(name: &str) -> Result<Scenario, ScenarioError> {
                 .join(", "),
         });
     }
-    let text = std::fs::read_to_string(path).map_err(|e| ScenarioError::Unreadable {
-        file: name.to_owned(),
-        why: e.to_string(),
-    })?;
+    let text = read(path, name)?;
     let stem = path
         .file_stem()
         .map_or_else(|| "scenario".into(), |s| s.to_string_lossy().into_owned());
     parse(&stem, name, &text)
+}
+
+/// Longest file that is read, bytes: several times the longest scenario there can be.
+const MAX_FILE: u64 = 4 << 20;
+
+/// A file's text, if it is text and not endless.
+fn read(path: &Path, name: &str) -> Result<String, ScenarioError> {
+    let unreadable = |why: String| ScenarioError::Unreadable {
+        file: name.to_owned(),
+        why,
+    };
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(MAX_FILE + 1).read_to_end(&mut bytes))
+        .map_err(|e| unreadable(e.to_string()))?;
+    if bytes.len() as u64 > MAX_FILE {
+        return Err(unreadable("it is longer than 4 MiB".to_owned()));
+    }
+    String::from_utf8(bytes).map_err(|e| ScenarioError::Field {
+        file: name.to_owned(),
+        line: e.as_bytes()[..e.utf8_error().valid_up_to()]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count()
+            + 1,
+        field: "file".to_owned(),
+        found: "a byte that is not UTF-8".to_owned(),
+        allowed: "UTF-8 text".to_owned(),
+    })
 }
 
 /// Parses and checks a scenario's text; `file` is what messages call it.
@@ -322,7 +350,7 @@ enum RawPiece {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawDisc {
-    name: Option<String>,
+    name: Option<Spanned<String>>,
     x: Option<Num>,
     y: Option<Num>,
     along: Option<Num>,
@@ -366,8 +394,37 @@ impl std::fmt::Display for Allowed {
 
 /// Coordinates: well inside what the library's metres hold.
 const PLACE: Allowed = Allowed::Within(-10_000.0, 10_000.0);
-const LENGTH: Allowed = Allowed::Above(0.0, 1_000.0);
+/// Lengths, and whatever else must be above zero: still above it in the library's steps of 1/65536.
+const LENGTH: Allowed = Allowed::Within(LEAST, 1_000.0);
+const LEAST: f64 = 0.001;
 const DEGREES: Allowed = Allowed::Within(-36_000.0, 36_000.0);
+
+/// Longest path, m: within what the library's metres hold.
+const MAX_LENGTH: f64 = 30_000.0;
+/// Most ticks of one run, so that what it records fits into memory.
+const MAX_TICKS: f64 = 200_000.0;
+/// Most obstacles: every sensor looks at each of them in every tick.
+const MAX_OBSTACLES: usize = 1_000;
+
+/// What a message quotes: one line, and not a long one.
+pub fn shown(text: &str) -> String {
+    const LONGEST: usize = 120;
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let mut short: String = text.chars().take(LONGEST).map(plain).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        short.push('…');
+    }
+    short
+}
+
+/// A bare key, as every name in a scenario is one.
+fn is_key(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
+        && text.len() <= 64
+}
 
 struct Source<'a> {
     file: &'a str,
@@ -391,7 +448,7 @@ impl Source<'_> {
             file: self.file.to_owned(),
             line: self.line(at),
             field: field.to_owned(),
-            found: found.to_string(),
+            found: shown(&found.to_string()),
             allowed: allowed.to_string(),
         }
     }
@@ -399,24 +456,43 @@ impl Source<'_> {
     /// A message of the TOML reader, made to name the field.
     fn syntax(&self, error: &toml::de::Error) -> ScenarioError {
         let at = error.span().map_or(0, |s| s.start);
-        let before = self.text.get(..at.min(self.text.len())).unwrap_or("");
-        let line = self.text.lines().nth(self.line(at) - 1).unwrap_or("");
-        let table = before
-            .lines()
-            .chain(std::iter::once(line))
-            .filter_map(|l| l.trim().strip_prefix('['))
-            .next_back()
-            .map(|l| {
-                l.trim_start_matches('[')
-                    .split(']')
-                    .next()
-                    .unwrap_or("")
-                    .to_owned()
-            });
-        let key = line.split_once('=').map(|(key, _)| key.trim().to_owned());
+        // The key may stand above: an array goes over several lines.
+        let (mut table, mut key) = (None, None);
+        for line in self.text.lines().take(self.line(at)).map(str::trim) {
+            let header = line.trim_start_matches('[');
+            let name = header.split(']').next().unwrap_or("").trim();
+            if header.len() < line.len() && is_key(name) {
+                (table, key) = (Some(name), None);
+            } else if let Some((name, _)) = line.split_once('=') {
+                let name = name.trim();
+                if is_key(name) {
+                    key = Some(name);
+                } else if name.starts_with(['"', '\'']) {
+                    key = None;
+                }
+            }
+        }
+        if let Some(name) = error.message().strip_prefix("missing field `") {
+            let name = name.trim_end_matches('`');
+            // Only these are wanted outside of every table.
+            let above = [table, key];
+            let above = if matches!(name, "start" | "path") {
+                &[]
+            } else {
+                &above[..]
+            };
+            let mut field: Vec<&str> = above.iter().copied().flatten().collect();
+            field.push(name);
+            return self.wrong(
+                at,
+                &field.join("."),
+                "nothing",
+                "a value; it has no default",
+            );
+        }
         let field = match (table, key) {
             (Some(table), Some(key)) => format!("{table}.{key}"),
-            (Some(one), None) | (None, Some(one)) => one,
+            (Some(one), None) | (None, Some(one)) => one.to_owned(),
             (None, None) => "file".to_owned(),
         };
         let message = error.message().replace('\n', " ");
@@ -442,7 +518,7 @@ impl Source<'_> {
         if allowed.admits(x) {
             Ok(x)
         } else {
-            Err(self.wrong(value.span().start, field, x, allowed))
+            Err(self.wrong(value.span().start, field, format!("{x:?}"), allowed))
         }
     }
 
@@ -454,7 +530,7 @@ impl Source<'_> {
     ) -> Result<[f64; K], ScenarioError> {
         match values.get_ref().iter().find(|x| !allowed.admits(**x)) {
             None => Ok(*values.get_ref()),
-            Some(x) => Err(self.wrong(values.span().start, field, x, allowed)),
+            Some(x) => Err(self.wrong(values.span().start, field, format!("{x:?}"), allowed)),
         }
     }
 
@@ -485,6 +561,14 @@ impl Raw {
                 .to_radians(),
         ];
         let mut world = World::default();
+        if let Some(disc) = self.obstacle.get(MAX_OBSTACLES) {
+            return Err(src.wrong(
+                disc.span().start,
+                "obstacle",
+                format!("{} obstacles", self.obstacle.len()),
+                format!("at most {MAX_OBSTACLES}"),
+            ));
+        }
         for (i, disc) in self.obstacle.iter().enumerate() {
             world.discs.push(check_disc(src, i, disc, &track)?);
         }
@@ -507,6 +591,20 @@ impl Raw {
             "run.duration",
             Allowed::Above(0.0, 100_000.0),
         )?;
+        let ticks = (duration / robot.period).ceil();
+        if ticks > MAX_TICKS {
+            let at = [&self.run.duration, &self.robot.period]
+                .into_iter()
+                .flatten()
+                .next()
+                .map_or(0, |value| value.span().start);
+            return Err(src.wrong(
+                at,
+                "run.duration / robot.period",
+                format!("{ticks} ticks"),
+                format!("at most {MAX_TICKS} ticks"),
+            ));
+        }
         let laps = match &self.run.laps {
             None => 1,
             Some(laps) => u16::try_from(*laps.get_ref())
@@ -540,7 +638,7 @@ impl Raw {
 impl RawRobot {
     fn check(&self, src: &Source<'_>) -> Result<RobotSpec, ScenarioError> {
         let base = self.preset.robot();
-        let rate = Allowed::Above(0.0, 100.0);
+        let rate = Allowed::Within(LEAST, 100.0);
         let time = Allowed::Within(0.0, 2.0);
         Ok(RobotSpec {
             preset: self.preset,
@@ -617,7 +715,7 @@ impl RawSensors {
                 self.range.as_ref(),
                 base.range,
                 "sensors.range",
-                Allowed::Above(0.0, 100.0),
+                Allowed::Within(0.01, 100.0),
             )?,
             width: degrees(
                 self.width.as_ref(),
@@ -662,8 +760,11 @@ fn check_path(src: &Source<'_>, raw: &Spanned<RawPath>) -> Result<PathSpec, Scen
             let mut checked: Vec<[f64; 3]> = Vec::with_capacity(list.len());
             for (i, point) in list.iter().enumerate() {
                 let field = format!("path.points[{i}]");
-                let [x, y, degrees] =
-                    src.numbers(point, &field, Allowed::Within(-36_000.0, 36_000.0))?;
+                let [x, y, degrees] = src.numbers(point, &field, DEGREES)?;
+                if let Some(far) = [x, y].iter().find(|x| !PLACE.admits(**x)) {
+                    let found = format!("{far:?}");
+                    return Err(src.wrong(point.span().start, &field, found, PLACE));
+                }
                 if let Some(last) = checked.last()
                     && (last[0] - x).hypot(last[1] - y) < 1e-3
                 {
@@ -709,20 +810,62 @@ fn check_path(src: &Source<'_>, raw: &Spanned<RawPath>) -> Result<PathSpec, Scen
             }
             PathForm::Pieces(checked)
         }
-        _ => {
+        (points, pieces) => {
+            let found = match (points, pieces) {
+                (Some(_), Some(_)) => "both `points` and `[[path.piece]]`".to_owned(),
+                (_, Some(pieces)) => format!("{} pieces", pieces.len()),
+                _ => "neither `points` nor `[[path.piece]]`".to_owned(),
+            };
             return Err(src.wrong(
                 at,
                 "path",
-                "neither or both, or too many",
+                found,
                 "either `points` or 1 to 4096 `[[path.piece]]`",
             ));
         }
     };
-    Ok(PathSpec {
+    let path = PathSpec {
         form,
         closed: raw.closed,
         gaps: raw.gaps,
-    })
+    };
+    check_whole(src, at, &path)?;
+    Ok(path)
+}
+
+/// What shows only in the whole path: its length, and that a closed one meets itself.
+fn check_whole(src: &Source<'_>, at: usize, path: &PathSpec) -> Result<(), ScenarioError> {
+    let track = path.track();
+    let length = track.length();
+    if length > MAX_LENGTH {
+        return Err(src.wrong(
+            at,
+            "path",
+            format!("a length of {length:.0} m"),
+            format!("at most {MAX_LENGTH} m"),
+        ));
+    }
+    let (Some(first), Some(last)) = (track.pieces().first(), track.pieces().last()) else {
+        return Ok(());
+    };
+    let (end, start) = (last.at(last.length()), first.at(0.0));
+    let gap = (end[0] - start[0]).hypot(end[1] - start[1]);
+    match path.form {
+        _ if !path.closed => Ok(()),
+        PathForm::Points(_) if last.length() < 1e-3 => Err(src.wrong(
+            at,
+            "path.points",
+            "a closed path with its last point on the first",
+            "a last point at least 1 mm from the first, which `closed` joins to it",
+        )),
+        PathForm::Pieces(_) if gap > 0.04 && !path.gaps => Err(src.wrong(
+            at,
+            "path.closed",
+            format!("a gap of {gap:.3} m from the last piece's end to the first one's start"),
+            "a last piece that ends where the first starts, or `gaps = true`",
+        )),
+        _ => Ok(()),
+    }
 }
 
 fn check_piece(src: &Source<'_>, field: &str, raw: &RawPiece) -> Result<Piece, ScenarioError> {
@@ -777,10 +920,20 @@ fn check_disc(
             ));
         }
     };
-    Ok(Disc {
-        name: raw.name.clone().unwrap_or_else(|| format!("Obs{}", i + 1)),
-        x,
-        y,
-        radius,
-    })
+    let name = match &raw.name {
+        None => format!("Obs{}", i + 1),
+        Some(name) => {
+            let text = name.get_ref();
+            if !(1..=40).contains(&text.chars().count()) || text.contains(char::is_control) {
+                return Err(src.wrong(
+                    name.span().start,
+                    &field("name"),
+                    format!("`{text}`"),
+                    "1 to 40 characters on one line",
+                ));
+            }
+            text.clone()
+        }
+    };
+    Ok(Disc { name, x, y, radius })
 }

@@ -1,9 +1,9 @@
 //! Between the simulator's `f64` and the library's fixed-point quantities. Saturates; NaN becomes zero, but no caller
 //! lets one get this far.
 
-use fixed::types::{I8F24, I16F16, U0F32};
+use fixed::types::{I8F24, I16F16};
 use fuzzypilot::geometry::{Point, Pose};
-use fuzzypilot::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond, Seconds};
+use fuzzypilot::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond, Seconds};
 use std::f64::consts::TAU;
 
 /// A plain number.
@@ -21,19 +21,9 @@ pub fn speed(x: f64) -> MetresPerSecond {
     MetresPerSecond::new(number(x))
 }
 
-/// A curvature.
-pub fn per_metre(x: f64) -> PerMetre {
-    PerMetre::new(number(x))
-}
-
 /// A duration.
 pub fn seconds(x: f64) -> Seconds {
     Seconds::new(I8F24::saturating_from_num(if x.is_nan() { 0.0 } else { x }))
-}
-
-/// A share of a metre, for encoder scales.
-pub fn fine_metres(x: f64) -> U0F32 {
-    U0F32::saturating_from_num(if x.is_nan() { 0.0 } else { x })
 }
 
 /// An angle from radians, wrapped; good to the binary angle's own step.
@@ -45,6 +35,11 @@ pub fn angle(radians: f64) -> Angle {
 /// A pose.
 pub fn pose([x, y, heading]: [f64; 3]) -> Pose {
     Pose::new(Point::new(metres(x), metres(y)), angle(heading))
+}
+
+/// Back from a plain number.
+pub fn from_number(x: I16F16) -> f64 {
+    x.to_num()
 }
 
 /// Back to metres.

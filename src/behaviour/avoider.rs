@@ -14,7 +14,6 @@
 //! edge of the region.
 
 use super::follower::rate_of;
-use crate::geometry::leg;
 use crate::params::{Avoider, Limits};
 use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Turn, Twist};
 use crate::units::{Angle, Metres, MetresPerSecond, saturate};
@@ -22,17 +21,6 @@ use fixed::types::I16F16;
 
 /// Least angle by which a heading must clear the unfeasible region: keeps the strict ">" of the chapter after rounding.
 const EDGE: Angle = Angle::deg("0.5");
-
-/// β/2: half the angle that `obstacle`, grown by `grown`, subtends. A quarter turn when the robot is inside the grown
-/// circle.
-pub fn unfeasible_half_angle(obstacle: &Obstacle, grown: Metres) -> Angle {
-    let reach = obstacle.radius + grown;
-    let distance = obstacle.centre.norm();
-    if distance <= reach {
-        return Angle::QUARTER;
-    }
-    Angle::of(leg(distance, reach).bits(), reach.bits())
-}
 
 /// Desired motion while passing `held` on its committed side.
 pub fn avoid(
@@ -60,7 +48,7 @@ pub fn avoid(
         .evaluate(s, theta_degrees, avoider.speed_input);
 
     // Wanted bearing of the obstacle in the next tick, mirrored frame: θ + Δθ.
-    let half = unfeasible_half_angle(held, grown);
+    let half = held.unfeasible_half_angle(grown);
     let fuzzy = theta + Angle::from_degrees(I16F16::from_num(out.deflection));
     let edge = half + EDGE;
     let wanted = if fuzzy.bits() < edge.bits() {
@@ -75,7 +63,7 @@ pub fn avoid(
         for other in &sensed.obstacles {
             let near = other.free_distance(robot_radius) < avoider.range;
             let bearing = mirror(other.bearing());
-            let half = unfeasible_half_angle(other, grown);
+            let half = other.unfeasible_half_angle(grown);
             let off = bearing - direction;
             if near && off.abs().bits() < half.bits() && blocks_sooner(other, held) {
                 direction = bearing - half - EDGE;

@@ -1,6 +1,6 @@
 //! `host-sim bench-tick`
 
-use super::{Variants, load};
+use super::{Variants, load, number};
 use clap::Args;
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
 use fuzzypilot::ports::{
@@ -18,15 +18,8 @@ use std::time::{Duration, Instant};
 #[derive(Args)]
 pub struct BenchArguments {
     /// Seconds a measurement.
-    #[arg(long, default_value_t = 1.0, value_parser = seconds)]
+    #[arg(long, default_value_t = 1.0, value_parser = number(0.001, 600.0), allow_hyphen_values = true)]
     seconds: f64,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(s) if s > 0.0 && s <= 600.0 => Ok(s),
-        _ => Err("allowed is a number above 0, at most 600".to_owned()),
-    }
 }
 
 pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
@@ -53,8 +46,7 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
             grouped(rate),
         ]);
     }
-    println!("{table}");
-    Ok(())
+    super::print(format_args!("{table}\n"))
 }
 
 /// Ports that replay what a real run saw, so that every branch of the tick is taken as often as in life.

@@ -1,6 +1,7 @@
 //! `host-sim errata`: what every printed variant does to Experiment 1, measured.
 
 use super::sweep::many;
+use super::whole;
 use clap::Args;
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 use host_sim::params::{AxisName, CoarseName, FineNn, InputName, LawName, TablesName};
@@ -10,7 +11,7 @@ use host_sim::track::Piece;
 #[derive(Args)]
 pub struct ErrataArguments {
     /// Seeds a variant.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, default_value_t = 20, value_parser = whole(1, 100_000), allow_hyphen_values = true)]
     seeds: u64,
 }
 
@@ -104,6 +105,5 @@ pub fn execute(arguments: &ErrataArguments) -> anyhow::Result<()> {
             steps,
         ]);
     }
-    println!("{table}");
-    Ok(())
+    super::print(format_args!("{table}\n"))
 }

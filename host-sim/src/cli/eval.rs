@@ -1,6 +1,6 @@
 //! `host-sim eval`
 
-use super::BadInput;
+use super::{BadInput, print};
 use clap::{Args, Subcommand};
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
 use fixed::types::I16F16;
@@ -8,6 +8,7 @@ use fuzzypilot::fuzzy::FiredRule;
 use fuzzypilot::tables::coarse::{self, CoarseOutput, CoarseTables};
 use fuzzypilot::tables::fine::{self, FineOutput, FineSet, FineTables};
 use host_sim::params::{CoarseName, Control, FineNn, InputName, Preset, TablesName};
+use host_sim::scenario::shown;
 use host_sim::tables::reference;
 use std::path::PathBuf;
 
@@ -57,7 +58,7 @@ struct CoarseArguments {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["s", "theta"])]
     points: Option<PathBuf>,
     /// Detection range D, m: top of the s axis.
-    #[arg(long, default_value = "4")]
+    #[arg(long, default_value = "4", allow_hyphen_values = true)]
     range: String,
     /// Erratum of Table 7.3.
     #[arg(long = "table-7-3", value_enum, default_value = "corrected")]
@@ -98,19 +99,18 @@ fn fine(arguments: &FineArguments) -> anyhow::Result<()> {
     }
     let d = number("d", arguments.d.as_deref())?;
     let phi = number("phi", arguments.phi.as_deref())?;
-    print_fine(tables, d, phi, &at(d, phi));
-    Ok(())
+    print_fine(tables, d, phi, &at(d, phi))
 }
 
-fn print_fine(tables: &FineTables, d: f64, phi: f64, out: &FineOutput) {
+fn print_fine(tables: &FineTables, d: f64, phi: f64, out: &FineOutput) -> anyhow::Result<()> {
     let peaks = (
         tables.antecedents.rows.peaks().map(|p| p.to_num::<f64>()),
         tables.antecedents.cols.peaks().map(|p| p.to_num::<f64>()),
     );
     let exact = |table: &dyn Fn() -> f64| table();
-    println!("fine controller at d = {d}, φ = {phi}°");
-    println!(
-        "{}",
+    print(format_args!("fine controller at d = {d}, φ = {phi}°\n"))?;
+    print(format_args!(
+        "{}\n",
         outputs(&[
             (
                 "v [axis units, 0 to 3]",
@@ -125,10 +125,10 @@ fn print_fine(tables: &FineTables, d: f64, phi: f64, out: &FineOutput) {
                 3
             ),
         ])
-    );
+    ))?;
     let rules = out.activation.fired();
-    println!(
-        "{}",
+    print(format_args!(
+        "{}\n",
         fired(
             ["φ", "d", "v", "Δφ"],
             &rules,
@@ -143,7 +143,7 @@ fn print_fine(tables: &FineTables, d: f64, phi: f64, out: &FineOutput) {
                 .to_vec()
             }
         )
-    );
+    ))
 }
 
 fn coarse(arguments: &CoarseArguments) -> anyhow::Result<()> {
@@ -175,8 +175,7 @@ fn coarse(arguments: &CoarseArguments) -> anyhow::Result<()> {
     }
     let s = number("s", arguments.s.as_deref())?;
     let theta = number("theta", arguments.theta.as_deref())?;
-    print_coarse(tables, [s, theta, range], input, &at(s, theta));
-    Ok(())
+    print_coarse(tables, [s, theta, range], input, &at(s, theta))
 }
 
 fn print_coarse(
@@ -184,7 +183,7 @@ fn print_coarse(
     [s, theta, range]: [f64; 3],
     input: coarse::SpeedInput,
     out: &CoarseOutput,
-) {
+) -> anyhow::Result<()> {
     let peaks = (
         tables.antecedents.rows.peaks().map(|p| p.to_num::<f64>()),
         tables.antecedents.cols.peaks().map(|p| p.to_num::<f64>()),
@@ -196,16 +195,16 @@ fn print_coarse(
         coarse::SpeedInput::Bearing => theta,
     };
     let speed = reference(&tables.speed, (&peaks.0, &peaks.1), (share, angle));
-    println!(
-        "coarse controller at s = {s} m of {range} m, θ = {theta}° (positive: obstacle on the left)"
-    );
-    println!(
-        "{}",
+    print(format_args!(
+        "coarse controller at s = {s} m of {range} m, θ = {theta}° (positive: obstacle on the left)\n"
+    ))?;
+    print(format_args!(
+        "{}\n",
         outputs(&[
             ("Δθ [°, clockwise]", out.deflection.to_num(), deflection, 3),
             ("v [share of Vmax]", out.speed.to_num(), speed, 4),
         ])
-    );
+    ))?;
     let (column, names) = match input {
         coarse::SpeedInput::Deflection => ("Δθ", "7.4: v"),
         coarse::SpeedInput::Bearing => ("θ", "7.4: v"),
@@ -214,8 +213,8 @@ fn print_coarse(
         |terms: &[[fuzzypilot::fuzzy::Term; 3]; 3], rule: &FiredRule, of: [&'static str; 3]| {
             vec![of[usize::from(terms[usize::from(rule.row)][usize::from(rule.col)].0)]]
         };
-    println!(
-        "{}",
+    print(format_args!(
+        "{}\n",
         fired(
             ["s", "θ", "7.3: Δθ"],
             &out.deflection_rules.fired(),
@@ -223,9 +222,9 @@ fn print_coarse(
             &coarse::ANGLE_TERMS,
             |rule| term(tables.deflection.terms(), rule, coarse::ANGLE_TERMS),
         )
-    );
-    println!(
-        "{}",
+    ))?;
+    print(format_args!(
+        "{}\n",
         fired(
             ["s", column, names],
             &out.speed_rules.fired(),
@@ -233,7 +232,7 @@ fn print_coarse(
             &coarse::ANGLE_TERMS,
             |rule| term(tables.speed.terms(), rule, coarse::SPEED_TERMS),
         )
-    );
+    ))
 }
 
 fn outputs(rows: &[(&str, f64, f64, usize)]) -> Table {
@@ -282,7 +281,8 @@ fn number(name: &str, text: Option<&str>) -> Result<f64, BadInput> {
     match text.trim().parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),
         _ => Err(BadInput(format!(
-            "{name}: found `{text}`; allowed is a finite number"
+            "{name}: found `{}`; allowed is a finite number",
+            shown(text)
         ))),
     }
 }
@@ -296,16 +296,17 @@ fn many(
 ) -> anyhow::Result<()> {
     let name = file.display();
     let bad = |line: u64, what: String| BadInput(format!("{name}:{line}: {what}"));
+    let unreadable = |e: csv::Error| {
+        BadInput(format!(
+            "{name}: cannot be read ({e}); allowed is a CSV file with columns {}",
+            inputs.join(",")
+        ))
+    };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_path(file)
-        .map_err(|e| {
-            BadInput(format!(
-                "{name}: cannot be read ({e}); allowed is a CSV file with columns {}",
-                inputs.join(",")
-            ))
-        })?;
-    let header = reader.headers().map_err(|e| bad(1, e.to_string()))?.clone();
+        .map_err(unreadable)?;
+    let header = reader.headers().map_err(unreadable)?.clone();
     let mut place = [0; 2];
     for (slot, input) in place.iter_mut().zip(inputs) {
         *slot = header.iter().position(|h| h == input).ok_or_else(|| {
@@ -313,7 +314,7 @@ fn many(
                 1,
                 format!(
                     "header: found `{}`; allowed are columns {}",
-                    header.iter().collect::<Vec<_>>().join(","),
+                    shown(&header.iter().collect::<Vec<_>>().join(",")),
                     inputs.join(",")
                 ),
             )
@@ -340,7 +341,10 @@ fn many(
                 .ok_or_else(|| {
                     bad(
                         line,
-                        format!("{input}: found `{text}`; allowed is a finite number"),
+                        format!(
+                            "{input}: found `{}`; allowed is a finite number",
+                            shown(text)
+                        ),
                     )
                 })?;
         }
@@ -348,6 +352,5 @@ fn many(
         let echo = |i: usize| row.get(place[i]).unwrap_or("").to_owned();
         writer.write_record([echo(0), echo(1), a.to_string(), b.to_string()])?;
     }
-    print!("{}", String::from_utf8(writer.into_inner()?)?);
-    Ok(())
+    print(String::from_utf8(writer.into_inner()?)?)
 }

@@ -1,6 +1,6 @@
 //! `host-sim list`
 
-use super::BadInput;
+use super::{BadInput, print};
 use clap::Args;
 use comfy_table::{Table, presets::NOTHING};
 use host_sim::scenario::{BUILT_IN, parse};
@@ -18,18 +18,18 @@ pub fn execute(arguments: &ListArguments) -> anyhow::Result<()> {
             .iter()
             .find(|(known, _)| known == name)
             .ok_or_else(|| {
+                let known: Vec<&str> = BUILT_IN.iter().map(|(known, _)| *known).collect();
                 BadInput(format!(
-                    "--show {name}: no such built-in scenario (see `host-sim list`)"
+                    "--show {name}: no such built-in scenario; allowed is one of {}",
+                    known.join(", ")
                 ))
             })?;
-        print!("{text}");
-        return Ok(());
+        return print(text);
     }
     let mut table = Table::new();
     table.load_style(NOTHING);
     for (name, text) in BUILT_IN {
         table.add_row([*name, parse(name, name, text)?.about.as_str()]);
     }
-    println!("{table}");
-    Ok(())
+    print(format_args!("{table}\n"))
 }

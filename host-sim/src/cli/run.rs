@@ -1,6 +1,6 @@
 //! `host-sim run`
 
-use super::{BadInput, Variants, load};
+use super::{BadInput, Variants, check_folder, load, print, put, whole};
 use anyhow::Context;
 use clap::Args;
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
@@ -18,9 +18,16 @@ pub struct RunArguments {
     /// Built-in scenario (see `host-sim list`) or a TOML file; experiment-1 when left out.
     scenario: Option<String>,
     #[command(flatten)]
+    options: Options,
+}
+
+/// How to run, and where the results go.
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
     variants: Variants,
     /// Seed of the run's noise.
-    #[arg(long, default_value_t = SEED)]
+    #[arg(long, default_value_t = 1, value_parser = whole(0, u64::MAX), allow_hyphen_values = true)]
     seed: u64,
     /// Folder for the results; out/SCENARIO when left out.
     #[arg(long, value_name = "DIR")]
@@ -30,29 +37,28 @@ pub struct RunArguments {
     json: Option<PathBuf>,
 }
 
-/// The seed that is used when none is given.
-const SEED: u64 = 1;
-
-impl Default for RunArguments {
-    fn default() -> Self {
+impl RunArguments {
+    /// What is run without a command.
+    pub fn experiment_1(options: Options) -> Self {
         Self {
             scenario: None,
-            variants: Variants::default(),
-            seed: SEED,
-            out: None,
-            json: None,
+            options,
         }
     }
 }
 
 pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
     let name = arguments.scenario.as_deref().unwrap_or("experiment-1");
+    let arguments = &arguments.options;
     let scenario = load(name, &arguments.variants)?;
     let folder = match &arguments.out {
         Some(folder) => folder.clone(),
         None => Path::new("out").join(&scenario.name),
     };
-    check_destination(&folder, arguments.json.as_deref())?;
+    check_folder(&folder)?;
+    if let Some(file) = &arguments.json {
+        check_file(file)?;
+    }
 
     let progress = progress(&scenario);
     let mut metrics = Metrics::new(&scenario, arguments.seed);
@@ -74,27 +80,19 @@ pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
         put(file, &json(&summary)?)?;
     }
     progress.finish_and_clear();
-    report(&scenario, &summary);
-    println!("written: {}", folder.display());
-    Ok(())
+    print(report(&scenario, &summary))?;
+    print(format_args!("written: {}\n", folder.display()))
 }
 
-/// Refuses early what could only be written half.
-fn check_destination(folder: &Path, json: Option<&Path>) -> Result<(), BadInput> {
-    if folder.exists() && !folder.is_dir() {
+/// Refuses early what could not be written after the run.
+fn check_file(file: &Path) -> Result<(), BadInput> {
+    let folder = file.parent().filter(|p| !p.as_os_str().is_empty());
+    let named = file.file_name().is_some() && !file.as_os_str().to_string_lossy().ends_with('/');
+    if !named || file.is_dir() || folder.is_some_and(|p| !p.is_dir()) {
         return Err(BadInput(format!(
-            "--out {}: is a file; allowed is a folder, existing or new",
-            folder.display()
+            "--json {}: allowed is a file in an existing folder",
+            file.display()
         )));
-    }
-    if let Some(file) = json {
-        let parent = file.parent().filter(|p| !p.as_os_str().is_empty());
-        if file.is_dir() || parent.is_some_and(|p| !p.is_dir()) {
-            return Err(BadInput(format!(
-                "--json {}: allowed is a file in an existing folder",
-                file.display()
-            )));
-        }
     }
     Ok(())
 }
@@ -115,16 +113,6 @@ fn json(summary: &Summary) -> anyhow::Result<Vec<u8>> {
     let mut text = serde_json::to_string_pretty(summary)?;
     text.push('\n');
     Ok(text.into_bytes())
-}
-
-/// Writes a file whole or not at all.
-fn put(file: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let mut partial = file.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
-    std::fs::write(&partial, bytes)
-        .and_then(|()| std::fs::rename(&partial, file))
-        .with_context(|| format!("{}: cannot be written", file.display()))
 }
 
 fn write(
@@ -151,14 +139,14 @@ const STORY: [(&str, &str, u64, Option<u64>); 3] = [
     ("Obs6", "left", 49, None),
 ];
 
-fn report(scenario: &Scenario, summary: &Summary) {
-    println!(
-        "{}: {} (seed {}), {} ticks, {:.1} s",
+fn report(scenario: &Scenario, summary: &Summary) -> String {
+    let mut text = format!(
+        "{}: {} (seed {}), {} ticks, {:.1} s\n",
         summary.scenario, summary.variant, summary.seed, summary.ticks, summary.sim_time_s
     );
     let told = scenario.name == "experiment-1";
     if told || !summary.avoidances.is_empty() {
-        println!("{}", avoidances(summary, told));
+        text += &format!("{}\n", avoidances(summary, told));
     }
     let metres = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), |x| format!("{x:.4} m"));
     let mut figures = Table::new();
@@ -183,7 +171,7 @@ fn report(scenario: &Scenario, summary: &Summary) {
         "odometry error at the end",
         &metres(Some(summary.odometry_error_m)),
     ]);
-    println!("{figures}");
+    text + &format!("{figures}\n")
 }
 
 fn avoidances(summary: &Summary, told: bool) -> Table {

@@ -18,13 +18,7 @@ pub struct SurfaceArguments {
 
 pub fn execute(arguments: &SurfaceArguments) -> anyhow::Result<()> {
     let out = &arguments.out;
-    if out.exists() && !out.is_dir() {
-        return Err(super::BadInput(format!(
-            "--out {}: is a file; allowed is a folder, existing or new",
-            out.display()
-        ))
-        .into());
-    }
+    super::check_folder(out)?;
     std::fs::create_dir_all(out)
         .with_context(|| format!("{}: cannot be created", out.display()))?;
     for (set, name, title) in [
@@ -52,8 +46,7 @@ pub fn execute(arguments: &SurfaceArguments) -> anyhow::Result<()> {
     ] {
         coarse_pictures(out, set, name, title)?;
     }
-    println!("written: {}", out.display());
-    Ok(())
+    super::print(format_args!("written: {}\n", out.display()))
 }
 
 fn axis(name: &str, unit: &str, terms: &[&str], peaks: &[f64], range: (f64, f64)) -> Axis {

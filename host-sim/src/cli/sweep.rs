@@ -1,6 +1,6 @@
 //! `host-sim sweep`
 
-use super::{Variants, load};
+use super::{Variants, load, whole};
 use clap::Args;
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
 use host_sim::metrics::{Metrics, Summary};
@@ -16,7 +16,7 @@ pub struct SweepArguments {
     #[command(flatten)]
     variants: Variants,
     /// Number of seeds, from 1 up.
-    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, default_value_t = 100, value_parser = whole(1, 1_000_000), allow_hyphen_values = true)]
     seeds: u64,
 }
 
@@ -107,6 +107,5 @@ pub fn execute(arguments: &SweepArguments) -> anyhow::Result<()> {
                 .to_string(),
         ]);
     }
-    println!("{table}");
-    Ok(())
+    super::print(format_args!("{table}\n"))
 }
