@@ -36,7 +36,7 @@ pub fn drive(body: &Body, limits: &Limits, period: Seconds, last: Twist, wanted:
         step(limits.acceleration),
     );
     let lowered = linear.unsigned_abs() < wanted.linear.bits().unsigned_abs()
-        && (linear ^ wanted.linear.bits()) >= 0;
+        && i64::from(linear).wrapping_mul(wanted.linear.bits().into()) >= 0;
     let angular = if lowered {
         ratio(wanted.angular.bits(), linear, wanted.linear.bits())
     } else {

@@ -8,16 +8,22 @@ use crate::units::{Metres, MetresPerSecond, Seconds, saturate};
 
 /// Limits the speed so that the robot's disc, grown by the margin, stops before the nearest echo in its corridor.
 ///
-/// With braking a and reaction time T (a period and the latency) a speed v needs v·T + v²/2a. Half of the free
-/// distance is granted to each term: v ≤ free/2T and v ≤ √(a·free). Turning in place stays allowed; a disc turns
-/// freely. Returns the twist and whether it was limited.
+/// What is still to be driven on commands already under way, (v + a·L/2)·L with v the speed commanded last, a the
+/// braking and L the latency, is taken from the free distance first. With reaction time T (a period and the latency) a
+/// speed v then needs v·T + v²/2a; half of the rest is granted to each term: v ≤ free/2T and v ≤ √(a·free). Turning in
+/// place stays allowed; a disc turns freely. Returns the twist and whether it was limited.
+///
+/// `timing` is period and latency; `last` the twist commanded in the tick before.
 pub fn guard(
     params: &Guard,
     radius: Metres,
-    reaction: Seconds,
+    timing: (Seconds, Seconds),
     sensed: &Sensed,
+    last: Twist,
     wanted: Twist,
 ) -> (Twist, bool) {
+    let (period, latency) = timing;
+    let reaction = period + latency;
     let reach = radius + params.margin;
     let mut free = Metres::MAX;
     for echo in &sensed.echoes {
@@ -28,6 +34,10 @@ pub fn guard(
     if free == Metres::MAX || wanted.linear <= MetresPerSecond::ZERO {
         return (wanted, false);
     }
+    let slowing = MetresPerSecond::new(params.braking).over(latency);
+    let faster = MetresPerSecond::from_bits(slowing.bits() >> 1);
+    let under_way = (last.linear.max(MetresPerSecond::ZERO) + faster).over(latency);
+    let free = (free - under_way).max(Metres::ZERO);
     let distance = u64::from(free.bits().unsigned_abs());
     let by_reaction = (i64::from(free.bits()) << 23)
         .checked_div(i64::from(reaction.bits()))

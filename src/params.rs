@@ -130,6 +130,9 @@ pub struct Guard {
     pub braking: I16F16,
 }
 
+/// The most sensors in a ring.
+pub const MAX_BEAMS: usize = 64;
+
 /// One range sensor of the ring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mount {
@@ -230,11 +233,7 @@ impl<const N: usize> Params<N> {
             "latency",
             "0 to 2 s",
         )?;
-        check(
-            N >= 1 && N <= crate::sense::MAX_BEAMS,
-            "ring.mounts",
-            "1 to 64 sensors",
-        )?;
+        check(N >= 1 && N <= MAX_BEAMS, "ring.mounts", "1 to 64 sensors")?;
         positive(self.ring.max_range > Metres::ZERO, "ring.max_range")?;
         positive(self.ring.gap > Metres::ZERO, "ring.gap")?;
         check(
@@ -242,7 +241,22 @@ impl<const N: usize> Params<N> {
             "ring.radius",
             "0 < smallest <= largest",
         )?;
+        check(
+            self.ring.max_age >= Seconds::ZERO,
+            "ring.max_age",
+            "0 or more",
+        )?;
+        positive(self.ring.residual > Metres::ZERO, "ring.residual")?;
         positive(self.follower.distance_scale > 0, "follower.distance_scale")?;
+        positive(
+            self.follower.corner_speed > MetresPerSecond::ZERO,
+            "follower.corner_speed",
+        )?;
+        check(
+            self.follower.arrival >= Metres::ZERO,
+            "follower.arrival",
+            "0 or more",
+        )?;
         check(
             self.follower.approach_angle.bits() > 0
                 && self.follower.approach_angle.bits() <= Angle::QUARTER.bits(),
@@ -259,6 +273,11 @@ impl<const N: usize> Params<N> {
             self.avoider.margin >= Metres::ZERO,
             "avoider.margin",
             "0 or more",
+        )?;
+        check(
+            self.avoider.overshoot.bits() >= 0,
+            "avoider.overshoot",
+            "0 to 180 degrees",
         )?;
         check(
             self.supervisor.exit > self.supervisor.enter

@@ -1,6 +1,6 @@
 //! Raw readings to what the controllers understand: wheel travel, echo points, circles.
 //!
-//! Cost: one pass over the ring, one circle fit a segment; at most [`MAX_BEAMS`] echoes and
+//! Cost: one pass over the ring, one circle fit a segment; at most [`MAX_BEAMS`](crate::params::MAX_BEAMS) echoes and
 //! [`MAX_OBSTACLES`](crate::signals::MAX_OBSTACLES) obstacles.
 
 mod circle;
@@ -11,9 +11,6 @@ pub use scan::sense_ranges;
 
 use crate::ports::{Fault, WheelCounts};
 use crate::signals::Travel;
-
-/// The most sensors in a ring.
-pub const MAX_BEAMS: usize = 64;
 
 /// Turns cumulative counts into travel. A missed reading is made good by the next one.
 #[derive(Clone, Copy, Debug, Default)]

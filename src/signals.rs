@@ -4,6 +4,7 @@
 
 use crate::fuzzy::FiredRule;
 use crate::geometry::{Point, Pose, leg};
+use crate::params::MAX_BEAMS;
 use crate::ports::Fault;
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
 use heapless::Vec;
@@ -52,7 +53,7 @@ impl Obstacle {
 #[derive(Clone, Debug, Default)]
 pub struct Sensed {
     /// Echo points, body frame.
-    pub echoes: Vec<Point, 64>,
+    pub echoes: Vec<Point, MAX_BEAMS>,
     /// Obstacles, nearest surface first.
     pub obstacles: Vec<Obstacle, MAX_OBSTACLES>,
     /// Sensors with a valid reading.

@@ -105,8 +105,7 @@ impl<const N: usize> Robot<N> {
             ),
             Decision::Stop(_) => Behaviour::default(),
         };
-        let reaction = p.period + p.latency;
-        let (passed, guarded) = guard(&p.guard, p.body.radius, reaction, &sensed, desired);
+        let (passed, guarded) = guard(&p.guard, p.body.radius, timing, &sensed, self.last, desired);
         let driven = drive(&p.body, &p.limits, p.period, self.last, passed);
 
         let left = ports.drive.set_speed(Side::Left, driven.wheels.left);

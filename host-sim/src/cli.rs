@@ -190,15 +190,13 @@ impl Variants {
         control.table_7_3 = self.table_7_3.unwrap_or(control.table_7_3);
         control.table_7_4_input = self.table_7_4_input.unwrap_or(control.table_7_4_input);
         control.integrator = self.integrator.or(control.integrator);
-        let tuned =
-            control.fine_set(scenario.robot.preset) == fuzzypilot::tables::fine::FineSet::Tuned;
-        if tuned && control.fine_nn == FineNn::Prose {
-            let what = match self.fine_nn {
-                Some(_) => "--fine-nn prose".to_owned(),
-                None => format!("{}: control.fine-nn: found prose", scenario.name),
+        if host_sim::scenario::contradicts(control, scenario.robot.preset) {
+            let flag = match self.fine_nn {
+                Some(_) => "--fine-nn prose",
+                None => "--tables tuned (the scenario has fine-nn = \"prose\")",
             };
             return Err(BadInput(format!(
-                "{what}: the tuned tables have no such erratum; allowed with the printed tables"
+                "{flag}: the tuned tables have no such erratum; allowed with --tables printed"
             )));
         }
         match self.odometry {

@@ -1,11 +1,12 @@
 //! Scenarios: what is driven where. Built-in ones are TOML files of the same form that a user writes; this file reads
 //! and checks them, and names file, line, field and what is allowed when one is wrong.
 
-use crate::params::{Control, Preset};
+use crate::params::{Control, FineNn, Preset};
 use crate::recording::Disc;
 use crate::sensors::Noise;
 use crate::track::{Piece, Track};
 use crate::world::World;
+use fuzzypilot::tables::fine::FineSet;
 use serde::Deserialize;
 use std::fs::File;
 use std::io::Read;
@@ -274,8 +275,7 @@ struct Raw {
     obstacle: Vec<Spanned<RawDisc>>,
     #[serde(default)]
     run: RawRun,
-    #[serde(default)]
-    control: Control,
+    control: Option<Spanned<Control>>,
 }
 
 #[derive(Deserialize, Default)]
@@ -415,6 +415,11 @@ pub fn shown(text: &str) -> String {
         short.push('…');
     }
     short
+}
+
+/// Whether the prose's cell is asked for in tables that have none.
+pub fn contradicts(control: &Control, preset: Preset) -> bool {
+    control.fine_nn == FineNn::Prose && control.fine_set(preset) == FineSet::Tuned
 }
 
 /// A bare key, as every name in a scenario is one.
@@ -619,6 +624,18 @@ impl Raw {
                     )
                 })?,
         };
+        let control = self
+            .control
+            .as_ref()
+            .map_or(Control::default(), |c| *c.get_ref());
+        if contradicts(&control, robot.preset) {
+            return Err(src.wrong(
+                self.control.as_ref().map_or(0, |c| c.span().start),
+                "control.fine-nn",
+                "`prose` with the tuned tables, which have no such erratum",
+                "`table`, or the printed tables",
+            ));
+        }
         Ok(Scenario {
             name: name.to_owned(),
             about: self.about.clone(),
@@ -630,7 +647,7 @@ impl Raw {
             world,
             duration,
             laps,
-            control: self.control,
+            control,
         })
     }
 }

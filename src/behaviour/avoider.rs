@@ -49,7 +49,9 @@ pub fn avoid(
 
     // Wanted bearing of the obstacle in the next tick, mirrored frame: θ + Δθ.
     let half = held.unfeasible_half_angle(grown);
-    let fuzzy = theta + Angle::from_degrees(I16F16::from_num(out.deflection));
+    let deflection = Angle::from_degrees(I16F16::from_num(out.deflection));
+    // Past half a turn the sum stays there: wrapped, an obstacle behind would seem to be on the other side.
+    let fuzzy = Angle::from_bits(theta.bits().saturating_add(deflection.bits()));
     let edge = half + EDGE;
     let wanted = if fuzzy.bits() < edge.bits() {
         edge

@@ -3,11 +3,12 @@
 
 use super::path::Path;
 use crate::geometry::{Point, Pose};
-use crate::units::{Angle, Metres, PerMetre, saturate};
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, saturate};
 use fixed::types::I16F16;
 
-/// The most pieces that one tick looks at.
-pub const LOOK: usize = 8;
+/// The most pieces that one tick looks at. Points closer than a thirty-second of what the robot drives in a tick
+/// leave the cursor behind; space them wider.
+pub const LOOK: usize = 32;
 
 /// Progress along a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,10 +95,11 @@ impl Cursor {
 
     /// Square of the speed that the path ahead allows, m²/s² with 32 fractional bits: what braking at `braking` m/s²
     /// still brings down to √(`lateral`/κ) in every bend, to `corner` at every corner of more than 15° and to rest at
-    /// an open end. Looks over [`LOOK`] pieces.
+    /// an open end. Looks as far as braking from `top` needs, over [`LOOK`] pieces at most.
     pub fn speed_limit_squared(
         &self,
         path: &Path<'_>,
+        top: MetresPerSecond,
         braking: I16F16,
         lateral: I16F16,
         corner: Metres,
@@ -128,8 +130,7 @@ impl Cursor {
             if jump.abs().bits() > Angle::deg("15").bits() {
                 limit = limit.min(brake(square(corner), ahead));
             }
-            // Beyond this no robot that brakes at 0.1 m/s² or more from 1 m/s has anything to decide.
-            if ahead > Metres::lit("20") {
+            if brake(0, ahead) > square(Metres::from_bits(top.bits())) {
                 break;
             }
             index = next;

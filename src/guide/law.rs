@@ -35,6 +35,7 @@ pub fn guide(
     let lead = Metres::from_bits(last.linear.over(period).bits() >> 1);
     let squared = cursor.speed_limit_squared(
         path,
+        limits.speed,
         limits.acceleration,
         follower.lateral_acceleration,
         Metres::from_bits(follower.corner_speed.bits()),

@@ -128,7 +128,11 @@ impl Segment {
                 let magnitude = (1i64 << 32)
                     .checked_div(i64::from(radius.bits()))
                     .map_or(0, saturate);
-                PerMetre::from_bits(if sweep >= 0 { magnitude } else { -magnitude })
+                PerMetre::from_bits(if sweep >= 0 {
+                    magnitude
+                } else {
+                    magnitude.saturating_neg()
+                })
             }
         }
     }
@@ -184,7 +188,7 @@ pub enum PathError {
     TooShort,
     /// More than [`MAX_PIECES`] pieces.
     TooMany,
-    /// The piece with this index has no length, a radius that is not positive, or no sweep.
+    /// The piece with this index has no length, a radius that is not positive, or a sweep of none or over a turn.
     Degenerate(usize),
     /// The piece with this index starts more than 5 cm from the end of the one before.
     Gap(usize),
@@ -196,7 +200,10 @@ impl core::fmt::Display for PathError {
             Self::TooShort => f.write_str("a path needs at least two points or one segment"),
             Self::TooMany => write!(f, "a path has at most {MAX_PIECES} pieces"),
             Self::Degenerate(i) => {
-                write!(f, "piece {i} has no length, no sweep or no positive radius")
+                write!(
+                    f,
+                    "piece {i} has no length, no positive radius, or a sweep of none or over a turn"
+                )
             }
             Self::Gap(i) => write!(f, "piece {i} does not start where the one before ends"),
         }
@@ -237,7 +244,9 @@ impl<'a> Path<'a> {
         for (i, segment) in segments.iter().enumerate() {
             let sound = match *segment {
                 Segment::Line { length, .. } => length > Metres::ZERO,
-                Segment::Arc { radius, sweep, .. } => radius > Metres::ZERO && sweep != 0,
+                Segment::Arc { radius, sweep, .. } => {
+                    radius > Metres::ZERO && sweep != 0 && sweep.unsigned_abs() <= 1 << 24
+                }
             };
             if !sound || segment.length() <= Metres::ZERO {
                 return Err(PathError::Degenerate(i));

@@ -2,10 +2,10 @@
 
 use super::circle::fit_circle;
 use crate::geometry::Point;
-use crate::params::RingGeometry;
+use crate::params::{MAX_BEAMS, RingGeometry};
 use crate::ports::{Fault, Range, RangeReading};
 use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
-use crate::units::{Metres, MetresPerSecond, saturate};
+use crate::units::{Metres, MetresPerSecond, Seconds, saturate};
 use heapless::Vec;
 
 /// Judges every reading, places the echoes in the body frame and makes circles of them.
@@ -21,7 +21,7 @@ pub fn sense_ranges<const N: usize>(
         nearest: Metres::MAX,
         ..Sensed::default()
     };
-    let mut segments: Vec<Segment, 64> = Vec::new();
+    let mut segments: Vec<Segment, MAX_BEAMS> = Vec::new();
     let mut open: Option<Segment> = None;
     for (mount, reading) in ring.mounts.iter().zip(readings) {
         let range = judge(ring, reading, speed);
@@ -86,9 +86,9 @@ fn judge<const N: usize>(
         _ if reading.age > ring.max_age => Range::Invalid(Fault::Stale),
         Range::Echo(distance) if distance < Metres::ZERO => Range::Invalid(Fault::OutOfRange),
         Range::Echo(distance) if distance > ring.max_range => Range::Clear,
-        Range::Echo(distance) => {
-            Range::Echo((distance - speed.abs().over(reading.age)).max(Metres::ZERO))
-        }
+        Range::Echo(distance) => Range::Echo(
+            (distance - speed.abs().over(reading.age.max(Seconds::ZERO))).max(Metres::ZERO),
+        ),
         Range::Clear => Range::Clear,
     }
 }
@@ -98,7 +98,7 @@ fn join_ends<const N: usize>(
     ring: &RingGeometry<N>,
     readings: &[RangeReading; N],
     sensed: &mut Sensed,
-    segments: &mut Vec<Segment, 64>,
+    segments: &mut Vec<Segment, MAX_BEAMS>,
 ) {
     let echo = |reading: Option<&RangeReading>| {
         reading.is_some_and(|r| matches!(judge(ring, r, MetresPerSecond::ZERO), Range::Echo(_)))

@@ -1,109 +1,155 @@
-//! `host-sim errata`: what every printed variant does to Experiment 1, measured.
+//! `host-sim errata`: what every printed variant does to a scenario, measured.
 
-use super::sweep::many;
-use super::whole;
+use super::sweep::{many, sides};
+use super::{Variants, load};
 use clap::Args;
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
+use host_sim::metrics::Summary;
 use host_sim::params::{AxisName, CoarseName, FineNn, InputName, LawName, TablesName};
-use host_sim::scenario::{PathForm, Scenario};
-use host_sim::track::Piece;
 
 #[derive(Args)]
 pub struct ErrataArguments {
+    /// Built-in scenario or TOML file; variants that it has no use for are left out.
+    #[arg(default_value = "experiment-1")]
+    scenario: String,
     /// Seeds a variant.
-    #[arg(long, default_value_t = 20, value_parser = whole(1, 100_000), allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: u64,
 }
 
-type Change = fn(&mut Scenario);
-
-/// Every variant beside the default: its flag, and what it changes.
-const VARIANTS: [(&str, Change); 9] = [
-    ("(default)", |_| {}),
-    ("--fine-nn prose", |s| s.control.fine_nn = FineNn::Prose),
-    ("--speed-axis literal", |s| {
-        s.control.speed_axis = AxisName::Literal;
-    }),
-    ("--table-7-3 printed", |s| {
-        s.control.table_7_3 = CoarseName::Printed;
-    }),
-    ("--table-7-4-input bearing", |s| {
-        s.control.table_7_4_input = InputName::Bearing;
-    }),
-    ("--radius 6", |s| {
-        if let PathForm::Pieces(pieces) = &mut s.path.form {
-            for piece in pieces {
-                if let Piece::Arc { radius, .. } = piece {
-                    *radius = 6.0;
-                }
-            }
-        }
-    }),
-    ("--law paper", |s| s.control.law = LawName::Paper),
-    ("--tables tuned", |s| {
-        s.control.tables = Some(TablesName::Tuned);
-    }),
-    ("--law paper --table-7-3 printed", |s| {
-        s.control.law = LawName::Paper;
-        s.control.table_7_3 = CoarseName::Printed;
-    }),
-];
+/// Every variant beside the default, by its flags.
+fn variants() -> Vec<(&'static str, Variants)> {
+    let none = Variants::default();
+    vec![
+        ("(default)", none),
+        (
+            "--fine-nn prose",
+            Variants {
+                fine_nn: Some(FineNn::Prose),
+                ..none
+            },
+        ),
+        (
+            "--speed-axis literal",
+            Variants {
+                speed_axis: Some(AxisName::Literal),
+                ..none
+            },
+        ),
+        (
+            "--table-7-3 printed",
+            Variants {
+                table_7_3: Some(CoarseName::Printed),
+                ..none
+            },
+        ),
+        (
+            "--table-7-4-input bearing",
+            Variants {
+                table_7_4_input: Some(InputName::Bearing),
+                ..none
+            },
+        ),
+        (
+            "--radius 6",
+            Variants {
+                radius: Some(6.0),
+                ..none
+            },
+        ),
+        (
+            "--law paper",
+            Variants {
+                law: Some(LawName::Paper),
+                ..none
+            },
+        ),
+        (
+            "--tables printed",
+            Variants {
+                tables: Some(TablesName::Printed),
+                ..none
+            },
+        ),
+        (
+            "--tables tuned",
+            Variants {
+                tables: Some(TablesName::Tuned),
+                ..none
+            },
+        ),
+    ]
+}
 
 pub fn execute(arguments: &ErrataArguments) -> anyhow::Result<()> {
-    let base = host_sim::scenario::load("experiment-1")?;
+    let base = load(&arguments.scenario, &Variants::default())?;
     let mut table = Table::new();
     table.load_style(ASCII_MARKDOWN);
     table.set_header([
         "variant",
         "reached end",
         "collisions",
-        "least clearance",
+        "clearance least / mean",
         "RMS free",
         "max free",
-        "ticks (mean)",
-        "Obs4, Obs5, Obs6 (seed 1)",
+        "ticks",
+        "passes of seed 1 (runs that agree)",
     ]);
-    for (name, change) in VARIANTS {
+    for (name, variant) in variants() {
         let mut scenario = base.clone();
-        change(&mut scenario);
+        if variant.apply(&mut scenario).is_err() {
+            continue;
+        }
         let all = many(&scenario, arguments.seeds)?;
-        let runs = all.len() as f64;
-        let least = all
-            .iter()
-            .filter_map(|s| s.min_clearance_m)
-            .fold(f64::INFINITY, f64::min);
-        let worst = |of: fn(&host_sim::metrics::Summary) -> Option<f64>| {
-            let worst = all.iter().filter_map(of).fold(f64::NEG_INFINITY, f64::max);
-            if worst.is_finite() {
-                format!("{worst:.3}")
-            } else {
-                "never on it".to_owned()
-            }
-        };
-        let steps = all.first().map_or_else(String::new, |s| {
-            s.avoidances
-                .iter()
-                .map(|a| format!("{} {} {}", a.obstacle, a.side, a.steps))
-                .collect::<Vec<_>>()
-                .join(", ")
-        });
-        table.add_row([
-            name.to_owned(),
-            format!(
-                "{} of {}",
-                all.iter().filter(|s| s.reached_end).count(),
-                all.len()
-            ),
-            all.iter().map(|s| s.collisions).sum::<u64>().to_string(),
-            format!("{least:.3}"),
-            worst(|s| s.cross_track_rms_m),
-            worst(|s| s.cross_track_max_m),
-            format!(
-                "{:.0}",
-                all.iter().map(|s| s.ticks as f64).sum::<f64>() / runs
-            ),
-            steps,
-        ]);
+        table.add_row(row(name, &all));
     }
     super::print(format_args!("{table}\n"))
+}
+
+fn row(name: &str, all: &[Summary]) -> [String; 8] {
+    let runs = all.len() as f64;
+    let clearances: Vec<f64> = all.iter().filter_map(|s| s.min_clearance_m).collect();
+    let clearance = if clearances.is_empty() {
+        "–".to_owned()
+    } else {
+        let least = clearances.iter().copied().fold(f64::INFINITY, f64::min);
+        format!(
+            "{least:.3} / {:.3}",
+            clearances.iter().sum::<f64>() / clearances.len() as f64
+        )
+    };
+    let worst = |of: fn(&Summary) -> Option<f64>| {
+        let worst = all.iter().filter_map(of).fold(f64::NEG_INFINITY, f64::max);
+        if worst.is_finite() {
+            format!("{worst:.3}")
+        } else {
+            "never on it".to_owned()
+        }
+    };
+    let passes = all.first().map_or_else(String::new, |first| {
+        let passes: Vec<String> = first
+            .avoidances
+            .iter()
+            .map(|a| format!("{} {} {}", a.obstacle, a.side, a.steps))
+            .collect();
+        let agree = all.iter().filter(|s| sides(s) == sides(first)).count();
+        format!("{} ({agree})", passes.join(", "))
+    });
+    [
+        name.to_owned(),
+        format!(
+            "{} of {}",
+            all.iter().filter(|s| s.reached_end).count(),
+            all.len()
+        ),
+        all.iter().map(|s| s.collisions).sum::<u64>().to_string(),
+        clearance,
+        worst(|s| s.cross_track_rms_m),
+        worst(|s| s.cross_track_max_m),
+        format!(
+            "{:.0}",
+            all.iter().map(|s| s.ticks as f64).sum::<f64>() / runs
+        ),
+        passes,
+    ]
 }

@@ -28,7 +28,7 @@ pub fn once(scenario: &Scenario, seed: u64) -> Result<Summary, RunError> {
 }
 
 /// Obstacles passed and on which side.
-fn sides(summary: &Summary) -> Vec<(&str, &str)> {
+pub fn sides(summary: &Summary) -> Vec<(&str, &str)> {
     summary
         .avoidances
         .iter()
