@@ -27,7 +27,12 @@ impl Point {
 
     /// Length; exact to one step, saturates.
     pub fn norm(self) -> Metres {
-        hypot(self.x, self.y)
+        root(self.norm_squared())
+    }
+
+    /// Square of the length, in squares of a step; saturates. For comparing lengths without a root.
+    pub const fn norm_squared(self) -> u64 {
+        square(self.x).saturating_add(square(self.y))
     }
 
     /// Direction; 0 for the null vector.
@@ -92,18 +97,18 @@ pub(crate) fn times(length: Metres, ratio: I2F30) -> Metres {
     Metres::from_bits(saturate((wide + (1 << 29)) >> 30))
 }
 
-/// √(a² + b²), rounded down to a step; saturates.
-pub(crate) fn hypot(a: Metres, b: Metres) -> Metres {
-    let square = |m: Metres| u64::from(m.bits().unsigned_abs()).pow(2);
-    from_square(square(a).saturating_add(square(b)))
+/// Square of a length, in squares of a step.
+pub(crate) const fn square(m: Metres) -> u64 {
+    let bits = m.bits().unsigned_abs() as u64;
+    bits.wrapping_mul(bits)
 }
 
 /// √(c² − a²) where it exists, else 0.
 pub(crate) fn leg(c: Metres, a: Metres) -> Metres {
-    let square = |m: Metres| u64::from(m.bits().unsigned_abs()).pow(2);
-    from_square(square(c).saturating_sub(square(a)))
+    root(square(c).saturating_sub(square(a)))
 }
 
-fn from_square(square: u64) -> Metres {
+/// Root of a sum of squares, rounded down to a step; saturates.
+pub(crate) fn root(square: u64) -> Metres {
     Metres::from_bits(saturate(square.isqrt() as i64))
 }

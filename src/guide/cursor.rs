@@ -2,8 +2,8 @@
 //! in one tick, so a path that crosses itself or comes back past itself cannot confuse it.
 
 use super::path::Path;
-use crate::geometry::{Point, Pose};
-use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, saturate};
+use crate::geometry::{Point, Pose, square};
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre};
 use fixed::types::I16F16;
 
 /// The most pieces that one tick looks at. Points closer than a thirty-second of what the robot drives in a tick
@@ -104,7 +104,6 @@ impl Cursor {
         lateral: I16F16,
         corner: Metres,
     ) -> u64 {
-        let square = |m: Metres| u64::from(m.bits().unsigned_abs()).pow(2);
         let brake = |from: u64, distance: Metres| {
             let gain = u64::from(braking.to_bits().unsigned_abs())
                 .saturating_mul(u64::from(distance.max(Metres::ZERO).bits().unsigned_abs()));
@@ -145,9 +144,4 @@ impl Cursor {
             false => path.is_closed().then_some(0),
         }
     }
-}
-
-/// √ of a square with 32 fractional bits, as a raw `I16F16`.
-pub(crate) fn root(squared: u64) -> i32 {
-    saturate(squared.isqrt() as i64)
 }

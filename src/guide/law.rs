@@ -7,9 +7,9 @@
 //!
 //! Both act on the pose predicted over the command's latency.
 
-use super::cursor::{Cursor, root};
+use super::cursor::Cursor;
 use super::path::Path;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, root};
 use crate::params::{Follower, Law, Limits};
 use crate::signals::{Guidance, Twist};
 use crate::units::{Angle, Metres, MetresPerSecond, Seconds, saturate};
@@ -53,7 +53,7 @@ pub fn guide(
         progress: fix.progress,
         remaining: fix.remaining,
         laps: fix.laps,
-        speed_limit: MetresPerSecond::from_bits(root(squared)),
+        speed_limit: MetresPerSecond::from_bits(root(squared).bits()),
         at_end,
     }
 }

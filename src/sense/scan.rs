@@ -1,7 +1,7 @@
 //! One turn of the range ring: validity, segments, circles.
 
 use super::circle::fit_circle;
-use crate::geometry::Point;
+use crate::geometry::{Point, root, square};
 use crate::params::{MAX_BEAMS, RingGeometry};
 use crate::ports::{Fault, Range, RangeReading};
 use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
@@ -23,6 +23,7 @@ pub fn sense_ranges<const N: usize>(
     };
     let mut segments: Vec<Segment, MAX_BEAMS> = Vec::new();
     let mut open: Option<Segment> = None;
+    let (gap, mut nearest) = (square(ring.gap), u64::MAX);
     for (mount, reading) in ring.mounts.iter().zip(readings) {
         let range = judge(ring, reading, speed);
         if !matches!(range, Range::Invalid(_)) {
@@ -33,12 +34,12 @@ pub fn sense_ranges<const N: usize>(
             continue;
         };
         let point = mount.pose.to_world(Point::new(distance, Metres::ZERO));
-        sensed.nearest = sensed.nearest.min(point.norm());
+        nearest = nearest.min(point.norm_squared());
         let index = sensed.echoes.len();
         let joins = sensed
             .echoes
             .last()
-            .is_some_and(|last| (point - *last).norm() <= ring.gap);
+            .is_some_and(|last| (point - *last).norm_squared() <= gap);
         if sensed.echoes.push(point).is_err() {
             break;
         }
@@ -57,6 +58,9 @@ pub fn sense_ranges<const N: usize>(
         };
     }
     segments.extend(open);
+    if nearest < u64::MAX {
+        sensed.nearest = root(nearest);
+    }
     if ring.closed {
         join_ends(ring, readings, &mut sensed, &mut segments);
     }
@@ -109,7 +113,7 @@ fn join_ends<const N: usize>(
     let meet = echo(readings.first())
         && echo(readings.last())
         && segments.len() >= 2
-        && (*last - *first).norm() <= ring.gap;
+        && (*last - *first).norm_squared() <= square(ring.gap);
     if !meet {
         return;
     }
@@ -145,7 +149,9 @@ fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstac
         && fit.radius <= most
         && sagitta(half_width, fit.radius) >= ring.residual
         && fit.residual <= ring.residual
-        && points.iter().any(|p| p.norm() < fit.centre.norm())
+        && points
+            .iter()
+            .any(|p| p.norm_squared() < fit.centre.norm_squared())
     {
         return Obstacle {
             centre: fit.centre,
@@ -155,11 +161,7 @@ fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstac
         };
     }
     let radius = half_width.max(least).min(most);
-    let nearest = points
-        .iter()
-        .map(|p| p.norm())
-        .min()
-        .unwrap_or(Metres::ZERO);
+    let nearest = root(points.iter().map(|p| p.norm_squared()).min().unwrap_or(0));
     Obstacle {
         centre: Point::polar(nearest + radius, (first + last).direction()),
         radius,

@@ -1,7 +1,7 @@
 //! `host-sim errata`: what every printed variant does to a scenario, measured.
 
 use super::sweep::{many, sides};
-use super::{Variants, load};
+use super::{Variants, load, whole};
 use clap::Args;
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 use host_sim::metrics::Summary;
@@ -13,7 +13,7 @@ pub struct ErrataArguments {
     #[arg(default_value = "experiment-1")]
     scenario: String,
     /// Seeds a variant.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, default_value_t = 20, value_parser = whole(1, 100_000), allow_hyphen_values = true)]
     seeds: u64,
 }
 

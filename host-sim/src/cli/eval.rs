@@ -10,6 +10,8 @@ use fuzzypilot::tables::fine::{self, FineOutput, FineSet, FineTables};
 use host_sim::params::{CoarseName, Control, FineNn, InputName, Preset, TablesName};
 use host_sim::scenario::shown;
 use host_sim::tables::reference;
+use std::fs::File;
+use std::io::Read;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -287,6 +289,9 @@ fn number(name: &str, text: Option<&str>) -> Result<f64, BadInput> {
     }
 }
 
+/// Longest file of points that is read, bytes.
+const MAX_FILE: u64 = 64 << 20;
+
 /// Evaluates a file row by row; prints nothing unless every row is good.
 fn many(
     file: &std::path::Path,
@@ -296,17 +301,34 @@ fn many(
 ) -> anyhow::Result<()> {
     let name = file.display();
     let bad = |line: u64, what: String| BadInput(format!("{name}:{line}: {what}"));
-    let unreadable = |e: csv::Error| {
+    let unreadable = |why: String| {
         BadInput(format!(
-            "{name}: cannot be read ({e}); allowed is a CSV file with columns {}",
+            "{name}: cannot be read ({why}); allowed is a CSV file with columns {}",
             inputs.join(",")
         ))
     };
+    let mut bytes = Vec::new();
+    File::open(file)
+        .and_then(|file| file.take(MAX_FILE + 1).read_to_end(&mut bytes))
+        .map_err(|e| unreadable(e.to_string()))?;
+    if bytes.len() as u64 > MAX_FILE {
+        return Err(unreadable("it is longer than 64 MiB".to_owned()).into());
+    }
+    // The reader's own line numbers are off after empty lines and Windows line ends.
+    let line_of = |at: Option<&csv::Position>| {
+        let is_end = |b: &u8| matches!(b, b'\n' | b'\r');
+        let from = at.map_or(0, |at| at.byte() as usize).min(bytes.len());
+        let ends = bytes[from..].iter().take_while(|b| is_end(b)).count();
+        let before = bytes[..from + ends].iter();
+        before.filter(|b| **b == b'\n').count() as u64 + 1
+    };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_path(file)
-        .map_err(unreadable)?;
-    let header = reader.headers().map_err(unreadable)?.clone();
+        .from_reader(&bytes[..]);
+    let header = reader
+        .headers()
+        .map_err(|e| unreadable(e.to_string()))?
+        .clone();
     let mut place = [0; 2];
     for (slot, input) in place.iter_mut().zip(inputs) {
         *slot = header.iter().position(|h| h == input).ok_or_else(|| {
@@ -322,15 +344,16 @@ fn many(
     }
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns)?;
-    for (index, row) in reader.records().enumerate() {
+    for row in reader.records() {
         let row = row.map_err(|e| {
-            let line = e.position().map_or(index as u64 + 2, csv::Position::line);
-            bad(
-                line,
-                format!("row: {e}; allowed are as many fields as the header has"),
-            )
+            let what = match e.kind() {
+                csv::ErrorKind::UnequalLengths {
+                    expected_len, len, ..
+                } => format!("found fields: {len}; allowed: {expected_len}, as the header has"),
+                _ => "found a byte that is not UTF-8; allowed is UTF-8 text".to_owned(),
+            };
+            bad(line_of(e.position()), format!("row: {what}"))
         })?;
-        let line = row.position().map_or(index as u64 + 2, csv::Position::line);
         let mut values = [0.0; 2];
         for ((value, at), input) in values.iter_mut().zip(place).zip(inputs) {
             let text = row.get(at).unwrap_or("");
@@ -340,7 +363,7 @@ fn many(
                 .filter(|x| x.is_finite())
                 .ok_or_else(|| {
                     bad(
-                        line,
+                        line_of(row.position()),
                         format!(
                             "{input}: found `{}`; allowed is a finite number",
                             shown(text)
