@@ -16,13 +16,20 @@ pub struct Driven {
 
 /// Limits `wanted` and converts it: v ± ω·b/2.
 ///
-/// 1. Speed and yaw-rate limits scale both parts alike: the curvature ω/v stays.
-/// 2. Acceleration limits step from `last` towards it. While the speed is still too low for the command, the yaw rate
-///    is lowered with it, so the robot drives the commanded curve from the first metre.
-/// 3. When a wheel saturates, both wheels are scaled alike: the curvature stays, the speed gives way.
+/// 1. Speed, yaw-rate and wheel-speed limits scale both parts alike: the curvature ω/v stays, the speed gives way.
+/// 2. Acceleration limits step from `last` towards the result. While the speed is still too low for the command, the
+///    yaw rate is lowered with it, so the robot drives the commanded curve from the first metre.
+/// 3. Where that step would saturate a wheel on the way (speed still high, yaw rate already rising), the yaw rate waits
+///    for the speed; if it cannot fall fast enough, the speed waits for it. Neither exceeds its acceleration limit.
+///
+/// `last` is what this function returned in the tick before, or rest.
 pub fn drive(body: &Body, limits: &Limits, period: Seconds, last: Twist, wanted: Twist) -> Driven {
+    let arm = Metres::from_bits(body.track.bits() >> 1);
+    let rim = |twist: Twist| twist.angular.at(arm);
     let wanted = shrink(wanted, wanted.linear.bits(), limits.speed.bits());
     let wanted = shrink(wanted, wanted.angular.bits(), limits.yaw_rate.to_bits());
+    let fastest = wanted.linear.abs() + rim(wanted).abs();
+    let wanted = shrink(wanted, fastest.bits(), limits.wheel_speed.bits());
 
     let step =
         |rate: I16F16| saturate(i64::from(rate.to_bits()).wrapping_mul(period.bits().into()) >> 24);
@@ -30,6 +37,7 @@ pub fn drive(body: &Body, limits: &Limits, period: Seconds, last: Twist, wanted:
         to.min(from.saturating_add(step))
             .max(from.saturating_sub(step))
     };
+    let yaw_step = step(limits.yaw_acceleration);
     let linear = towards(
         last.linear.bits(),
         wanted.linear.bits(),
@@ -42,21 +50,25 @@ pub fn drive(body: &Body, limits: &Limits, period: Seconds, last: Twist, wanted:
     } else {
         wanted.angular.bits()
     };
-    let angular = towards(last.angular.bits(), angular, step(limits.yaw_acceleration));
-    let slewed = Twist {
-        linear: MetresPerSecond::from_bits(linear),
-        angular: RadiansPerSecond::from_bits(angular),
-    };
+    let angular = towards(last.angular.bits(), angular, yaw_step);
 
-    let rim = slewed.angular.at(Metres::from_bits(body.track.bits() >> 1));
-    let fastest = slewed.linear.abs() + rim.abs();
-    let twist = shrink(slewed, fastest.bits(), limits.wheel_speed.bits());
-    let rim = twist.angular.at(Metres::from_bits(body.track.bits() >> 1));
+    let left_for =
+        |used: MetresPerSecond| (limits.wheel_speed - used.abs()).max(MetresPerSecond::ZERO);
+    let room = left_for(MetresPerSecond::from_bits(linear));
+    let most = (i64::from(room.bits()) << 16)
+        .checked_div(i64::from(arm.bits()))
+        .map_or(i32::MAX, saturate);
+    let angular = towards(last.angular.bits(), angular.min(most).max(-most), yaw_step);
+    let angular = RadiansPerSecond::from_bits(angular);
+    let twist = Twist {
+        linear: MetresPerSecond::from_bits(linear).limit(left_for(angular.at(arm))),
+        angular,
+    };
     Driven {
         twist,
         wheels: WheelCommand {
-            left: (twist.linear - rim).limit(limits.wheel_speed),
-            right: (twist.linear + rim).limit(limits.wheel_speed),
+            left: (twist.linear - rim(twist)).limit(limits.wheel_speed),
+            right: (twist.linear + rim(twist)).limit(limits.wheel_speed),
         },
     }
 }

@@ -81,8 +81,10 @@ pub struct Follower {
     pub corner_speed: MetresPerSecond,
     /// The cursor looks this far along the path in one tick, and no further.
     pub reach: Metres,
-    /// An open path counts as driven when less than this remains.
+    /// An open path counts as driven when less than this remains…
     pub arrival: Metres,
+    /// …and its end is not farther away than this.
+    pub end_radius: Metres,
 }
 
 /// The avoider's settings.
@@ -257,11 +259,28 @@ impl<const N: usize> Params<N> {
             "follower.arrival",
             "0 or more",
         )?;
+        positive(
+            self.follower.end_radius > Metres::ZERO,
+            "follower.end_radius",
+        )?;
         check(
             self.follower.approach_angle.bits() > 0
                 && self.follower.approach_angle.bits() <= Angle::QUARTER.bits(),
             "follower.approach_angle",
             "above 0, up to 90 degrees",
+        )?;
+        positive(
+            self.follower.deflection_rate > 0,
+            "follower.deflection_rate",
+        )?;
+        positive(
+            self.follower.approach_gain > PerMetre::ZERO,
+            "follower.approach_gain",
+        )?;
+        check(
+            self.follower.feed_forward_band >= Metres::ZERO,
+            "follower.feed_forward_band",
+            "0 or more",
         )?;
         positive(self.follower.reach > Metres::ZERO, "follower.reach")?;
         positive(
@@ -274,10 +293,27 @@ impl<const N: usize> Params<N> {
             "avoider.margin",
             "0 or more",
         )?;
+        positive(self.avoider.deflection_rate > 0, "avoider.deflection_rate")?;
         check(
             self.avoider.overshoot.bits() >= 0,
             "avoider.overshoot",
             "0 to 180 degrees",
+        )?;
+        let acute = |angle: Angle| (0..Angle::QUARTER.bits()).contains(&angle.bits());
+        check(
+            acute(self.supervisor.clear),
+            "supervisor.clear",
+            "0 to below 90 degrees",
+        )?;
+        check(
+            acute(self.supervisor.tie),
+            "supervisor.tie",
+            "0 to below 90 degrees",
+        )?;
+        check(
+            self.supervisor.same >= Metres::ZERO,
+            "supervisor.same",
+            "0 or more",
         )?;
         check(
             self.supervisor.exit > self.supervisor.enter

@@ -36,9 +36,10 @@ const FOLLOWER: Follower = Follower {
     approach_angle: Angle::from_radians(n("1.2")),
     feed_forward_band: m("0.3"),
     lateral_acceleration: n("3"),
-    corner_speed: v("0.3"),
+    corner_speed: v("0.2"),
     reach: m("0.5"),
     arrival: m("0.02"),
+    end_radius: m("0.15"),
 };
 
 /// A small differential robot: 0.2 m across, 1 m/s, 20 Hz with 50 ms latency, `N` beams of 2 m all round.
@@ -128,6 +129,7 @@ pub fn chapter_robot<const N: usize>() -> Params<N> {
             deflection_rate: n("1"),
             reach: m("4"),
             arrival: m("0.1"),
+            end_radius: m("0.3"),
             ..FOLLOWER
         },
         avoider: Avoider {

@@ -103,6 +103,8 @@ pub struct Guidance {
     pub speed_limit: MetresPerSecond,
     /// The path's end is reached.
     pub at_end: bool,
+    /// The path is over, the robot is not at its end, and its law leads nowhere else.
+    pub missed_end: bool,
 }
 
 /// Which way past an obstacle.
@@ -125,6 +127,9 @@ pub enum StopReason {
     NoOdometry,
     /// The path is driven to its end.
     PathEnd,
+    /// The path is over, and the robot is not at its end. Only the printed law gives up so; the guided one heads for
+    /// the end.
+    PathMissed,
 }
 
 /// What the higher level decided.

@@ -1,7 +1,7 @@
 //! The higher level: which sub-task runs. Thresholds, dwell and side commitment are assumed; the chapter gives none,
 //! and with a single threshold robots chatter.
 
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, square};
 use crate::params::{Avoider, Supervisor};
 use crate::signals::{Decision, Guidance, Obstacle, Sensed, StopReason, Travel, Turn};
 use crate::units::{Angle, Metres};
@@ -123,8 +123,11 @@ impl SupervisorState {
             (stopped @ Mode::Stop(_), None) => stopped,
         };
         let changed = core::mem::discriminant(&before) != core::mem::discriminant(&self.mode);
-        self.dwelt = if changed {
-            0
+        self.dwelt = if matches!(before, Mode::Stop(_)) && changed {
+            // What happened while standing does not delay the next decision.
+            u16::MAX
+        } else if changed {
+            1
         } else {
             self.dwelt.saturating_add(1)
         };
@@ -183,6 +186,8 @@ impl SupervisorState {
     pub fn stops(&self, params: &Supervisor, now: &Situation<'_>) -> Option<StopReason> {
         if now.guidance.at_end {
             Some(StopReason::PathEnd)
+        } else if now.guidance.missed_end {
+            Some(StopReason::PathMissed)
         } else if self.blind > params.patience {
             Some(StopReason::NoRanges)
         } else if self.lost > params.patience {
@@ -192,9 +197,14 @@ impl SupervisorState {
         }
     }
 
-    /// Stop → Follow: nothing stops the robot any more, and has not for the dwell time.
+    /// Stop → Follow: nothing stops the robot any more, and has not for the dwell time. The end of a path is final; a
+    /// robot that is pushed away from it does not set off again.
     pub fn resumes(&self, params: &Supervisor, now: &Situation<'_>) -> bool {
-        self.stops(params, now).is_none() && self.healthy >= params.dwell.max(1)
+        let over = matches!(
+            self.mode,
+            Mode::Stop(StopReason::PathEnd | StopReason::PathMissed)
+        );
+        !over && self.stops(params, now).is_none() && self.healthy >= params.dwell.max(1)
     }
 
     /// Follow → Avoid: an obstacle nearer than `enter` covers the way that guidance wants, or one nearer than half of
@@ -245,10 +255,13 @@ impl SupervisorState {
         let heading = mirror(bearing);
         let far = held.obstacle.free_distance(now.robot_radius) > params.exit;
         let gone = held.unseen > params.patience;
-        let passed = way.bits() > needed.bits();
+        let clears = |angle: Angle| angle.abs().bits() > needed.bits();
+        let passed = way.is_left() && clears(way);
+        // A way that leads back from the obstacle has no side.
+        let away = way.abs().bits() > Angle::QUARTER.bits();
         // The way may also have swung clear on the other side, if the robot already points there.
-        let other_side = way.bits() < -needed.bits() && heading.bits() < -needed.bits();
-        (far || gone || passed || other_side) && threat(params, avoider, now).is_none()
+        let other_side = !way.is_left() && clears(way) && !heading.is_left() && clears(heading);
+        (far || gone || passed || away || other_side) && threat(params, avoider, now).is_none()
     }
 
     /// Avoid → Avoid: another obstacle in the way takes the held one's place once that is passed or it is the nearer;
@@ -290,7 +303,7 @@ fn choose_side(params: &Supervisor, now: &Situation<'_>, obstacle: &Obstacle) ->
         return inside;
     }
     let off = obstacle.bearing() - now.guidance.heading_error;
-    if off.bits() < -params.tie.bits() {
+    if !off.is_left() && off.abs().bits() > params.tie.bits() {
         Turn::Left
     } else {
         Turn::Right
@@ -300,16 +313,26 @@ fn choose_side(params: &Supervisor, now: &Situation<'_>, obstacle: &Obstacle) ->
 /// The inside rule: on a circular path whose centre lies on the obstacle's side, pass outside. An obstacle whose
 /// centre is within a quarter of its radius of the path is on neither side.
 pub fn inside_rule(now: &Situation<'_>, obstacle: &Obstacle) -> Option<Turn> {
-    let curvature = now.guidance.curvature;
-    let radius = (1i64 << 32).checked_div(i64::from(curvature.bits()))?;
-    let radius = Metres::from_bits(crate::units::saturate(radius));
-    let centre = now.guidance.foot + Point::polar(radius, now.guidance.tangent + Angle::QUARTER);
-    let from_centre = (now.pose.to_world(obstacle.centre) - centre).norm();
-    let slack = Metres::from_bits(obstacle.radius.bits() >> 2);
-    if from_centre + slack >= radius.abs() {
+    let curvature = i64::from(now.guidance.curvature.bits());
+    if curvature == 0 {
         return None;
     }
-    Some(if curvature.bits() < 0 {
+    // In the path's frame at the foot the circle's centre is (0, 1/κ): a point (x, y) is nearer to it than 1/|κ| − s
+    // if and only if y towards the centre exceeds s + (x² + y² − s²)·|κ|/2. No centre is computed: with a small κ it
+    // would lie beyond every coordinate.
+    let foot = Pose::new(now.guidance.foot, now.guidance.tangent);
+    let at = foot.to_body(now.pose.to_world(obstacle.centre));
+    let slack = Metres::from_bits(obstacle.radius.bits() >> 2);
+    let squares = at.norm_squared().saturating_sub(square(slack)) >> 16;
+    let sagitta = i64::try_from(squares)
+        .unwrap_or(i64::MAX)
+        .saturating_mul(curvature.abs())
+        >> 17;
+    let inward = if curvature > 0 { at.y } else { -at.y };
+    if i64::from((inward - slack).bits()) <= sagitta {
+        return None;
+    }
+    Some(if curvature < 0 {
         Turn::Left
     } else {
         Turn::Right

@@ -410,10 +410,10 @@ fn exact_circles() {
     // Span in degrees, and bounds of the radius' relative error over radii of 0.2 m and more.
     let spans = [
         (30.0, 4e-4..2.1e-3),
-        (60.0, 2e-4..6e-4),
-        (90.0, 8e-5..5e-4),
-        (180.0, 5e-5..2e-4),
-        (330.0, 2e-5..1.5e-4),
+        (60.0, 1e-4..6e-4),
+        (90.0, 4e-5..5e-4),
+        (180.0, 3e-5..2e-4),
+        (330.0, 1e-5..1.5e-4),
     ];
     println!("radius   span  radius off  centre off");
     for (span, bounds) in spans {

@@ -38,13 +38,7 @@ const SPEED: &Axis = &[
     ("B", 2.25),
     ("VB", 2.6),
 ];
-const SPEED_TUNED: &Axis = &[
-    ("VS", 0.0),
-    ("S", 0.75),
-    ("N", 1.5),
-    ("B", 2.4),
-    ("VB", 3.0),
-];
+const SPEED_TUNED: &Axis = &[("VS", 0.0), ("S", 0.3), ("N", 1.2), ("B", 2.4), ("VB", 3.0)];
 const DEFLECTION: &Axis = &[
     ("VS", 0.0),
     ("S", 20.0),
@@ -61,7 +55,7 @@ const TABLE_7_1: &str = "S S N B VB / S S N N B / VS S S N N / VS VS S S N / VB 
 const TABLE_7_2: &str = "VS VS VS VS VS / S N S S S / VS N N S S / N B B N N / B VB B B N";
 const TABLE_7_2_PROSE: &str = "VS VS VS VS VS / S N S S S / VS N B S S / N B B N N / B VB B B N";
 const TUNED_SPEED: &str =
-    "VB VB VB VB VB / B B B B B / S S S S S / VS VS VS VS VS / VS VS VS VS VS";
+    "VB VB VB VB VB / N N N N N / S S S S S / VS VS VS VS VS / VS VS VS VS VS";
 const TUNED_DEFLECTION: &str =
     "VS VS VS VS VS / N N N N N / B B B B B / VB VB VB VB VB / VB VB VB VB VB";
 const TABLE_7_3: &str = "L R R / Z R Z / Z R Z";

@@ -414,14 +414,15 @@ fn a_saturated_wheel_keeps_the_curvature() {
                     wheel_speed: speed(wheel_speed),
                     ..limits()
                 };
-                // Straight from that very twist, so that only step 3 acts.
-                let wanted = twist(linear, angular);
-                let driven = drive(&body(FINE), &limits, seconds(0.05), wanted, wanted);
+                let driven = settled(&body(FINE), &limits, twist(linear, angular));
                 let (v, w) = parts(driven.twist);
                 let share = wheel_speed / f64::abs(linear).mul_add(1.0, 0.1 * f64::abs(angular));
                 // Two rounded parts; the larger one carries the smaller relative error.
                 let cross = (v * angular - w * linear).abs();
-                assert!(cross < 2.0 * STEP * (f64::abs(angular) + f64::abs(linear)));
+                assert!(
+                    cross < 3.0 * STEP * (f64::abs(angular) + f64::abs(linear)),
+                    "{linear} {angular} {wheel_speed}: {v} {w}"
+                );
                 if share < 1.0 {
                     saturated += 1;
                     assert!(
@@ -434,7 +435,7 @@ fn a_saturated_wheel_keeps_the_curvature() {
                         .fold(0.0, f64::max);
                     assert!((fastest - wheel_speed).abs() < 4.0 * STEP);
                 } else {
-                    assert_eq!(driven.twist, wanted);
+                    assert_eq!(driven.twist, twist(linear, angular));
                 }
             }
         }

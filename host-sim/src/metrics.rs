@@ -44,6 +44,8 @@ pub struct Summary {
     pub sim_time_s: f64,
     /// The path was driven to its end (or all laps).
     pub reached_end: bool,
+    /// `path end`, `path missed` (over, but the robot elsewhere) or `time limit`.
+    pub ended: &'static str,
     /// Times that the robot came into contact with an obstacle.
     pub collisions: u64,
     /// Least distance from the rim to an obstacle, m; null in an empty world.
@@ -98,6 +100,7 @@ impl Metrics {
                 ticks: 0,
                 sim_time_s: 0.0,
                 reached_end: false,
+                ended: "",
                 collisions: 0,
                 min_clearance_m: None,
                 cross_track_rms_m: None,
@@ -224,6 +227,11 @@ impl Metrics {
         let s = &mut self.summary;
         s.sim_time_s = s.ticks as f64 * self.period;
         s.reached_end = ending == Ending::PathEnd;
+        s.ended = match ending {
+            Ending::PathEnd => "path end",
+            Ending::PathMissed => "path missed",
+            Ending::TimeLimit => "time limit",
+        };
         s.mean_speed_mps = self.travelled / s.sim_time_s.max(f64::MIN_POSITIVE);
         if s.free_ticks > 0 {
             s.cross_track_rms_m = Some((self.squares / s.free_ticks as f64).sqrt());

@@ -74,6 +74,7 @@ pub fn mode(decision: &Decision) -> (&'static str, &'static str) {
             side: Turn::Right, ..
         } => ("avoid", "turning right"),
         Decision::Stop(StopReason::PathEnd) => ("stop", "path end"),
+        Decision::Stop(StopReason::PathMissed) => ("stop", "path missed"),
         Decision::Stop(StopReason::NoRanges) => ("stop", "no ranges"),
         Decision::Stop(StopReason::NoOdometry) => ("stop", "no odometry"),
     }

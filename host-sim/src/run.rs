@@ -39,6 +39,8 @@ pub struct Step<'a> {
 pub enum Ending {
     /// The path's end, or the last lap.
     PathEnd,
+    /// The path was over, and the robot not at its end.
+    PathMissed,
     /// The time limit.
     TimeLimit,
 }
@@ -143,8 +145,12 @@ fn with_ring<const N: usize>(
     let ticks = (scenario.duration / scenario.robot.period).ceil() as u64;
     for tick in 0..ticks {
         let record = bench.step(scenario, &path, tick, observe);
-        let driven = matches!(record.decision, Decision::Stop(StopReason::PathEnd));
-        if driven || (path.is_closed() && record.guidance.laps >= scenario.laps) {
+        match record.decision {
+            Decision::Stop(StopReason::PathEnd) => return Ok(Ending::PathEnd),
+            Decision::Stop(StopReason::PathMissed) => return Ok(Ending::PathMissed),
+            _ => {}
+        }
+        if path.is_closed() && record.guidance.laps >= scenario.laps {
             return Ok(Ending::PathEnd);
         }
     }

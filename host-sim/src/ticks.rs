@@ -8,10 +8,10 @@ use fuzzypilot::units::Angle;
 
 /// The header row.
 #[rustfmt::skip]
-pub const COLUMNS: [&str; 48] = [
+pub const COLUMNS: [&str; 49] = [
     "tick", "mode", "side", "reason", "x_m", "y_m", "heading_turn32", "foot_x_m", "foot_y_m",
     "cross_track_m", "distance_m", "tangent_turn32", "curvature_per_m", "heading_error_turn32",
-    "progress_m", "remaining_m", "laps", "speed_limit_mps", "at_end", "obstacles", "valid_ranges",
+    "progress_m", "remaining_m", "laps", "speed_limit_mps", "at_end", "missed_end", "obstacles", "valid_ranges",
     "nearest_m", "held_x_m", "held_y_m", "held_radius_m", "held_residual_m", "held_echoes",
     "controller", "distance_input", "angle_input_deg", "speed_output", "deflection_output_deg",
     "rule1", "rule2", "rule3", "rule4", "speed_rule1", "speed_rule2", "speed_rule3", "speed_rule4",
@@ -69,6 +69,7 @@ pub fn row(record: &TickRecord) -> Vec<String> {
         guidance.laps.to_string(),
         q16(guidance.speed_limit.bits()),
         u8::from(guidance.at_end).to_string(),
+        u8::from(guidance.missed_end).to_string(),
         record.obstacles.to_string(),
         record.valid_ranges.to_string(),
         q16(record.nearest.bits()),

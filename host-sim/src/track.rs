@@ -117,28 +117,28 @@ impl Track {
     }
 
     /// Signed cross-track error of (x, y), left positive: its distance to the nearest place on the path not farther
-    /// along it than 2 m from `progress`.
+    /// along it than 2 m from `progress`, or to the nearest of all where no piece has one there.
     pub fn cross_track(&self, at: [f64; 2], progress: f64) -> f64 {
         let window = 2.0;
-        let mut best = f64::INFINITY;
+        let (mut best, mut anywhere) = (f64::INFINITY, f64::INFINITY);
         let total = self.starts.last().copied().unwrap_or(0.0)
             + self.pieces.last().map_or(0.0, Piece::length);
         for (piece, start) in self.pieces.iter().zip(&self.starts) {
             let along = piece.nearest(at);
             let apart = (start + along - progress).abs();
-            // The neighbour across the seam of a closed path is near, too.
-            if apart.min(total - apart) > window {
-                continue;
-            }
             let [x, y, heading] = piece.at(along);
             let (dx, dy) = (at[0] - x, at[1] - y);
-            let distance = dx.hypot(dy);
-            if distance < best.abs() {
-                let left = heading.cos() * dy - heading.sin() * dx;
-                best = distance.copysign(left);
+            let left = heading.cos() * dy - heading.sin() * dx;
+            let error = dx.hypot(dy).copysign(left);
+            // The neighbour across the seam of a closed path is near, too.
+            if apart.min(total - apart) <= window && error.abs() < best.abs() {
+                best = error;
+            }
+            if error.abs() < anywhere.abs() {
+                anywhere = error;
             }
         }
-        if best.is_finite() { best } else { 0.0 }
+        if best.is_finite() { best } else { anywhere }
     }
 
     /// The path as polylines, a new one after every gap.

@@ -56,7 +56,9 @@ pub fn avoid(
     let wanted = if fuzzy.bits() < edge.bits() {
         edge
     } else {
-        fuzzy.limit(edge + avoider.overshoot)
+        fuzzy.limit(Angle::from_bits(
+            edge.bits().saturating_add(avoider.overshoot.bits()),
+        ))
     };
     // A right turn by wanted − θ, as a direction in the mirrored body frame (left positive there, too).
     let mut direction = theta - wanted;

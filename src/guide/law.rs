@@ -27,8 +27,12 @@ pub fn guide(
     let (period, latency) = timing;
     let pose = predict(pose, last, latency);
     let fix = cursor.advance(path, pose.at, follower.reach);
+    let ends = !path.is_closed() && fix.remaining <= follower.arrival;
+    let elsewhere = ends && fix.distance > follower.end_radius;
     let toward = match follower.law {
         Law::Paper => fix.foot.heading,
+        // No tangent leads back to an end that was passed by: head for the place itself.
+        Law::Guided if elsewhere => (fix.foot.at - pose.at).direction(),
         Law::Guided => fix.foot.heading - approach(follower, fix.cross_track),
     };
     // The command covers one period of travel: the curvature at its middle stands for it.
@@ -40,9 +44,14 @@ pub fn guide(
         follower.lateral_acceleration,
         Metres::from_bits(follower.corner_speed.bits()),
     );
-    // A last crawl, so that an end is reached and not only approached.
-    let crawl = Metres::from_bits(follower.arrival.bits());
-    let at_end = !path.is_closed() && fix.remaining <= crawl;
+    // The way to a missed end is straight, and ends there.
+    let squared = if elsewhere {
+        let gain =
+            i64::from(limits.acceleration.to_bits()).wrapping_mul(fix.distance.bits().into());
+        gain.unsigned_abs().saturating_mul(2)
+    } else {
+        squared
+    };
     Guidance {
         foot: fix.foot.at,
         cross_track: fix.cross_track,
@@ -54,7 +63,8 @@ pub fn guide(
         remaining: fix.remaining,
         laps: fix.laps,
         speed_limit: MetresPerSecond::from_bits(root(squared).bits()),
-        at_end,
+        at_end: ends && !elsewhere,
+        missed_end: elsewhere && follower.law == Law::Paper,
     }
 }
 

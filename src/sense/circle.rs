@@ -32,32 +32,21 @@ pub fn fit_circle(points: &[Point]) -> Option<CircleFit> {
     let sum =
         |of: fn(&Point) -> Metres| points.iter().map(|p| i64::from(of(p).bits())).sum::<i64>();
     let (sum_x, sum_y) = (sum(|p| p.x), sum(|p| p.y));
-    let mean = Point::new(
-        Metres::from_bits(saturate(nearest_quotient(sum_x, n))),
-        Metres::from_bits(saturate(nearest_quotient(sum_y, n))),
-    );
+    // n times the offset from the mean: exact, where the mean itself would have to be rounded.
+    let offset = |x: Metres, sum: i64| i64::from(x.bits()).wrapping_mul(n).wrapping_sub(sum);
     // Block scaling: the largest offset gets SPAN bits, whatever the obstacle's size.
     let largest = points
         .iter()
-        .map(|p| {
-            (*p - mean)
-                .x
-                .bits()
-                .unsigned_abs()
-                .max((*p - mean).y.bits().unsigned_abs())
-        })
-        .max()?;
-    let bits = u32::BITS.saturating_sub(largest.leading_zeros());
+        .map(|p| offset(p.x, sum_x).unsigned_abs() | offset(p.y, sum_y).unsigned_abs())
+        .fold(0, |all, bits| all | bits);
+    let bits = u64::BITS.saturating_sub(largest.leading_zeros());
     let (up, down) = (SPAN.saturating_sub(bits), bits.saturating_sub(SPAN));
+    let half = (1i64 << down) >> 1;
+    let scaled = |x: Metres, sum: i64| ((offset(x, sum) << up) + half) >> down;
 
     let (mut uu, mut vv, mut uv, mut uz, mut vz) = (0i64, 0i64, 0i64, 0i64, 0i64);
     for p in points {
-        // From n·x − Σx, so that the offsets are from the exact mean and not from its rounded place.
-        let offset = |x: Metres, sum: i64| {
-            let exact = (i64::from(x.bits()).wrapping_mul(n).wrapping_sub(sum)) << up;
-            nearest_quotient(exact, n << down)
-        };
-        let (u, v) = (offset(p.x, sum_x), offset(p.y, sum_y));
+        let (u, v) = (scaled(p.x, sum_x), scaled(p.y, sum_y));
         let z = u * u + v * v;
         uu += u * u;
         vv += v * v;
@@ -67,47 +56,52 @@ pub fn fit_circle(points: &[Point]) -> Option<CircleFit> {
     }
     // |u| ≤ 2^15: means of squares ≤ 2^30, of cubes ≤ 2^46; determinant ≤ 2^60, numerators ≤ 2^77.
     let mean_of = |s: i64| nearest_quotient(s, n);
-    let (uu, vv, uv, uz, vz) = (
-        mean_of(uu),
-        mean_of(vv),
-        mean_of(uv),
-        mean_of(uz),
-        mean_of(vz),
-    );
+    let [uu, vv, uv, uz, vz] = [uu, vv, uv, uz, vz].map(mean_of);
     let determinant = uu * vv - uv * uv;
     // On a line the determinant vanishes; below this share of its scale the radius is noise.
     if determinant <= ((uu + vv) * (uu + vv)) >> 20 {
         return None;
     }
-    let numerator = |p: i64, q: i64, r: i64, s: i64| {
-        i128::from(p) * i128::from(q) - i128::from(r) * i128::from(s)
+    let solve = |p: i64, q: i64, r: i64, s: i64| {
+        let numerator = i128::from(p) * i128::from(q) - i128::from(r) * i128::from(s);
+        let excess = 66u32.saturating_sub(numerator.unsigned_abs().leading_zeros());
+        // Where the numerator needs more than 62 bits, a believable quotient has a long determinant, too.
+        i64::try_from(numerator >> excess)
+            .ok()?
+            .checked_div((determinant >> excess).checked_mul(2)?)
     };
-    let quotient =
-        |num: i128| i64::try_from(num / (2 * i128::from(determinant))).unwrap_or(i64::MAX >> 16);
-    let a = quotient(numerator(uz, vv, vz, uv));
-    let b = quotient(numerator(vz, uu, uz, uv));
+    let a = solve(uz, vv, vz, uv)?;
+    let b = solve(vz, uu, uz, uv)?;
     // Farther than 2^22 steps away the circle is a line at this scale.
     if a.saturating_abs() >= 1 << 22 || b.saturating_abs() >= 1 << 22 {
         return None;
     }
-    let squared = u64::try_from(a * a + b * b + uu + vv).ok()?;
-    let radius = squared.isqrt();
+    let squared = a * a + b * b + uu + vv;
+    let radius = i64::try_from(squared.unsigned_abs().isqrt()).ok()?;
 
-    let unscale = |s: i64| Metres::from_bits(saturate((s << down) >> up));
-    let centre = Point::new(unscale(a) + mean.x, unscale(b) + mean.y);
-    let radius = unscale(i64::try_from(radius).ok()?);
+    // A point's distance d misses the radius by (d² − r²)/2r as long as it misses little: no root a point.
     let misses = points.iter().map(|p| {
-        let miss = u64::from(((*p - centre).norm() - radius).bits().unsigned_abs());
-        miss.saturating_mul(miss)
+        let (u, v) = (scaled(p.x, sum_x) - a, scaled(p.y, sum_y) - b);
+        ((u * u + v * v - squared) >> 8).unsigned_abs()
     });
-    let residual = misses
-        .fold(0u64, u64::saturating_add)
-        .checked_div(points.len() as u64)?
-        .isqrt();
+    let mean_square = misses
+        .fold(0u64, |sum, miss| {
+            sum.saturating_add(miss.saturating_mul(miss))
+        })
+        .checked_div(n.unsigned_abs())?;
+    let residual = i64::try_from(mean_square.isqrt()).ok()? << 7;
+
+    let unscale = |s: i64| saturate(nearest_quotient(s << down, n << up));
+    let place = |s: i64, sum: i64| {
+        Metres::from_bits(saturate(nearest_quotient(
+            (s << down).saturating_add(sum << up),
+            n << up,
+        )))
+    };
     Some(CircleFit {
-        centre,
-        radius,
-        residual: Metres::from_bits(saturate(residual as i64)),
+        centre: Point::new(place(a, sum_x), place(b, sum_y)),
+        radius: Metres::from_bits(unscale(radius)),
+        residual: Metres::from_bits(unscale(residual.checked_div(radius)?)),
     })
 }
 

@@ -152,10 +152,7 @@ fn report(scenario: &Scenario, summary: &Summary) -> String {
     let mut figures = Table::new();
     figures.load_style(UTF8_FULL_CONDENSED);
     figures.set_header(["figure", "value"]);
-    figures.add_row([
-        "reached the end",
-        if summary.reached_end { "yes" } else { "no" },
-    ]);
+    figures.add_row(["ended by", summary.ended]);
     figures.add_row([
         "cross-track RMS, free stretches",
         &metres(summary.cross_track_rms_m),
