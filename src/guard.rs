@@ -26,9 +26,12 @@ pub fn guard(
     let reaction = period + latency;
     let reach = radius + params.margin;
     let mut free = Metres::MAX;
-    for echo in &sensed.echoes {
-        if echo.x > Metres::ZERO && echo.y.abs() < reach {
-            free = free.min((echo.x - leg(reach, echo.y)).max(Metres::ZERO));
+    for (i, echo) in sensed.echoes.iter().enumerate() {
+        // The place nearest to the corridor's middle that the echo may come from.
+        let spread = sensed.spreads.get(i).copied().unwrap_or_default();
+        let beside = (echo.y.abs() - spread).max(Metres::ZERO);
+        if echo.x > Metres::ZERO && beside < reach {
+            free = free.min((echo.x - leg(reach, beside)).max(Metres::ZERO));
         }
     }
     if free == Metres::MAX || wanted.linear <= MetresPerSecond::ZERO {

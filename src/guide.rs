@@ -4,6 +4,6 @@ mod cursor;
 mod law;
 mod path;
 
-pub use cursor::{Cursor, Fix};
+pub use cursor::{Cursor, Fix, LOOK};
 pub use law::guide;
 pub use path::{MAX_PIECES, Path, PathError, Segment, Waypoint};

@@ -52,8 +52,11 @@ impl Obstacle {
 /// What the sensors say this tick.
 #[derive(Clone, Debug, Default)]
 pub struct Sensed {
-    /// Echo points, body frame.
+    /// Echo points on their sensors' axes, body frame.
     pub echoes: Vec<Point, MAX_BEAMS>,
+    /// How far beside its point each echo may really stand: a cone says "somewhere on this arc". In the order of
+    /// `echoes`; 0 for beams.
+    pub spreads: Vec<Metres, MAX_BEAMS>,
     /// Obstacles, nearest surface first.
     pub obstacles: Vec<Obstacle, MAX_OBSTACLES>,
     /// Sensors with a valid reading.

@@ -662,6 +662,12 @@ fn the_corridor_is_as_wide_as_the_robot() {
             (wish, false)
         );
     }
+    // A cone's echo beside the corridor counts where its arc reaches into it.
+    let mut heard = echoes(&[point(0.3, 0.4)]);
+    let pass = |heard: &Sensed| guard(&GUARD, metres(0.2), AT_ONCE, heard, Twist::default(), fast);
+    assert!(!pass(&heard).1);
+    heard.spreads.push(metres(0.3)).unwrap();
+    assert!(pass(&heard).1);
     // Nothing seen, nothing limited.
     let blank = echoes(&[]);
     assert_eq!(
@@ -1003,8 +1009,18 @@ fn what_is_no_circle_gets_a_stand_in() {
     let mut readings = [CLEAR; 64];
     readings[16] = echo(1.0);
     let one = sense(&ring, &readings).obstacles[0];
+    // Half the ring's spacing to either side: sin(2.8°) at 1 m is 0.049, and 0.05 is the least radius.
     assert_eq!((one.radius, one.echoes), (metres(0.05), 1));
     assert!(f((one.centre - point(0.0, 1.05)).norm()) < 1e-3);
+    // The same echo heard by a cone of 20° may stand anywhere on its arc.
+    let mut cones = ring.clone();
+    for mount in &mut cones.mounts {
+        mount.width = Angle::deg("20");
+    }
+    let heard = sense(&cones, &readings);
+    let half = (10.0f64).to_radians().sin();
+    assert!((f(heard.obstacles[0].radius) - half).abs() < 1e-3);
+    assert!((f(heard.spreads[0]) - half).abs() < 1e-4);
     readings[17] = echo(1.0);
     let two = sense(&ring, &readings).obstacles[0];
     assert_eq!(two.echoes, 2);

@@ -226,6 +226,7 @@ impl Preset {
             field_of_view: TAU,
             range: tidy(si::from_metres(self.base::<8>().ring.max_range)),
             width: 0.0,
+            mount_radius: 0.0,
         }
     }
 }
@@ -235,7 +236,7 @@ fn tidy(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }
 
-/// Sensors spread evenly over the field of view, counter-clockwise, mounted at the robot's centre.
+/// Sensors spread evenly over the field of view, counter-clockwise, looking outwards.
 pub fn beams(sensors: &SensorSpec) -> Vec<BeamView> {
     let closed = sensors.field_of_view >= TAU - 1e-9;
     let spaces = if closed {
@@ -244,12 +245,15 @@ pub fn beams(sensors: &SensorSpec) -> Vec<BeamView> {
         sensors.count - 1
     };
     (0..sensors.count)
-        .map(|i| BeamView {
-            x: 0.0,
-            y: 0.0,
-            heading: sensors.field_of_view * (i as f64 / spaces as f64 - 0.5),
-            width: sensors.width,
-            max_range: sensors.range,
+        .map(|i| {
+            let heading = sensors.field_of_view * (i as f64 / spaces as f64 - 0.5);
+            BeamView {
+                x: sensors.mount_radius * heading.cos(),
+                y: sensors.mount_radius * heading.sin(),
+                heading,
+                width: sensors.width,
+                max_range: sensors.range,
+            }
         })
         .collect()
 }

@@ -78,6 +78,8 @@ pub struct SensorSpec {
     pub range: f64,
     /// Opening angle of each, radians; 0 for beams.
     pub width: f64,
+    /// Distance from the robot's centre at which each sits, looking outwards, m.
+    pub mount_radius: f64,
 }
 
 /// Ring sizes that the simulator is built for.
@@ -191,6 +193,7 @@ built_in!(
     "points",
     "facing-away",
     "one-obstacle",
+    "cones",
     "inside-arc",
     "slalom",
     "narrow-gap",
@@ -302,6 +305,7 @@ struct RawSensors {
     field_of_view: Option<Num>,
     range: Option<Num>,
     width: Option<Num>,
+    mount_radius: Option<Num>,
 }
 
 #[derive(Deserialize, Default)]
@@ -739,6 +743,12 @@ impl RawSensors {
                 base.width,
                 "sensors.width",
                 Allowed::Within(0.0, 90.0),
+            )?,
+            mount_radius: src.or(
+                self.mount_radius.as_ref(),
+                base.mount_radius,
+                "sensors.mount_radius",
+                Allowed::Within(0.0, 10.0),
             )?,
         })
     }

@@ -172,7 +172,23 @@ pub(crate) enum Pieces<'a> {
     Segments(&'a [Segment]),
 }
 
-/// A checked path over borrowed pieces.
+/// A checked path over borrowed pieces: a `static` slice, or storage filled at run time.
+///
+/// ```
+/// use fuzzypilot::{geometry::{Point, Pose}, guide::{Path, Segment}, units::{Angle, Metres}};
+///
+/// let mut pieces: heapless::Vec<Segment, 8> = heapless::Vec::new();
+/// pieces.push(Segment::line(Pose::default(), Metres::lit("2"))).map_err(|_| "full")?;
+/// pieces.push(Segment::arc(
+///     Point::new(Metres::lit("2"), Metres::lit("1")),
+///     Metres::lit("1"),
+///     Angle::deg("-90"),
+///     fixed::types::I16F16::lit("180"),
+/// )).map_err(|_| "full")?;
+/// let path = Path::segments(&pieces, false)?;
+/// assert!((path.length() - Metres::lit("5.14159")).abs() < Metres::lit("0.0001"));
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Path<'a> {
     pub(crate) pieces: Pieces<'a>,

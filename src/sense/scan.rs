@@ -5,7 +5,7 @@ use crate::geometry::{Point, root, square};
 use crate::params::{MAX_BEAMS, RingGeometry};
 use crate::ports::{Fault, Range, RangeReading};
 use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
-use crate::units::{Metres, MetresPerSecond, Seconds, saturate};
+use crate::units::{Angle, Metres, MetresPerSecond, Seconds, saturate};
 use heapless::Vec;
 
 /// Judges every reading, places the echoes in the body frame and makes circles of them.
@@ -40,7 +40,9 @@ pub fn sense_ranges<const N: usize>(
             .echoes
             .last()
             .is_some_and(|last| (point - *last).norm_squared() <= gap);
-        if sensed.echoes.push(point).is_err() {
+        if sensed.echoes.push(point).is_err()
+            || sensed.spreads.push(spread(distance, mount.width)).is_err()
+        {
             break;
         }
         open = match open.take() {
@@ -66,8 +68,12 @@ pub fn sense_ranges<const N: usize>(
     }
     for segment in &segments {
         let end = segment.start.saturating_add(segment.count);
-        if let Some(points) = sensed.echoes.get(segment.start..end) {
-            insert(&mut sensed.obstacles, circle_of(ring, points));
+        let pieces = (
+            sensed.echoes.get(segment.start..end),
+            sensed.spreads.get(segment.start..end),
+        );
+        if let (Some(points), Some(spreads)) = pieces {
+            insert(&mut sensed.obstacles, circle_of(ring, points, spreads));
         }
     }
     sensed
@@ -119,6 +125,7 @@ fn join_ends<const N: usize>(
     }
     let Some(tail) = segments.pop() else { return };
     sensed.echoes.rotate_right(tail.count);
+    sensed.spreads.rotate_right(tail.count);
     for segment in segments.iter_mut() {
         segment.start = segment.start.saturating_add(tail.count);
     }
@@ -132,17 +139,27 @@ fn join_ends<const N: usize>(
 ///
 /// A fit is believed with at least [`ENOUGH`] echoes, a radius and residual within the ring's bounds, and a sagitta of
 /// the arc seen that is not lost in that residual (a flatter arc says nothing about its radius). Otherwise the
-/// smallest disc that can have made the echoes stands in: as wide as they are and half a beam's spacing to either
-/// side, its surface through the nearest.
-fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstacle {
+/// disc that can have made the echoes stands in: as wide as they are, and to either side half a beam's spacing or half a
+/// cone's width, whichever is more; its surface through the nearest.
+fn circle_of<const N: usize>(
+    ring: &RingGeometry<N>,
+    points: &[Point],
+    spreads: &[Metres],
+) -> Obstacle {
     let [least, most] = ring.radius;
     let echoes = u8::try_from(points.len()).unwrap_or(u8::MAX);
     let first = points.first().copied().unwrap_or_default();
     let last = points.last().copied().unwrap_or_default();
     let width = (last - first).norm();
-    // Between echoes lie count − 1 spaces; one more covers what the outermost beams just missed.
-    let spaces = i32::from(echoes).saturating_sub(1).max(1);
-    let half_width = Metres::from_bits(width.bits().saturating_add(width.bits() / spaces) >> 1);
+    let nearest = root(points.iter().map(|p| p.norm_squared()).min().unwrap_or(0));
+    // Between echoes lie count − 1 spaces; half of one to either side covers what the outermost beams just missed. A
+    // single echo shows no space: there it is the ring's.
+    let missed = match i32::from(echoes).checked_sub(1).filter(|n| *n > 0) {
+        Some(spaces) => Metres::from_bits(width.bits().checked_div(spaces).unwrap_or(0) >> 1),
+        None => spread(nearest, pitch(ring)),
+    };
+    let cone = spreads.iter().copied().max().unwrap_or(Metres::ZERO);
+    let half_width = Metres::from_bits(width.bits() >> 1) + missed.max(cone);
     if points.len() >= ENOUGH
         && let Some(fit) = fit_circle(points)
         && fit.radius >= least
@@ -161,12 +178,28 @@ fn circle_of<const N: usize>(ring: &RingGeometry<N>, points: &[Point]) -> Obstac
         };
     }
     let radius = half_width.max(least).min(most);
-    let nearest = root(points.iter().map(|p| p.norm_squared()).min().unwrap_or(0));
     Obstacle {
         centre: Point::polar(nearest + radius, (first + last).direction()),
         radius,
         residual: ring.residual,
         echoes,
+    }
+}
+
+/// Half the width that an angle spans at `distance`.
+fn spread(distance: Metres, angle: Angle) -> Metres {
+    if angle == Angle::ZERO {
+        return Metres::ZERO;
+    }
+    let half = Angle::from_bits(angle.bits() >> 1).limit(Angle::QUARTER);
+    Point::polar(distance, half).y.abs()
+}
+
+/// Angle between two neighbouring sensors, from the first two; none in a ring of one.
+fn pitch<const N: usize>(ring: &RingGeometry<N>) -> Angle {
+    match ring.mounts.as_slice() {
+        [first, second, ..] => (second.pose.heading - first.pose.heading).abs(),
+        _ => Angle::ZERO,
     }
 }
 
