@@ -79,7 +79,7 @@ pub struct Follower {
     pub lateral_acceleration: I16F16,
     /// Speed at a corner of the path (a jump of its tangent), reached by braking before it.
     pub corner_speed: MetresPerSecond,
-    /// The cursor looks this far along the path in one tick, and no further.
+    /// The cursor looks this far along the path to find its first place, and never further in one tick.
     pub reach: Metres,
     /// An open path counts as driven when less than this remains…
     pub arrival: Metres,

@@ -10,7 +10,7 @@ mod sweep;
 
 use anyhow::Context;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use host_sim::params::{
+use host_sim::control::{
     AxisName, CoarseName, FineNn, InputName, IntegratorName, LawName, TablesName,
 };
 use host_sim::run::RunError;
@@ -47,7 +47,7 @@ enum Command {
     Surface(surface::SurfaceArguments),
     /// Run a scenario over many seeds on all cores and print the worst and the mean.
     Sweep(sweep::SweepArguments),
-    /// Run Experiment 1 with every erratum printed and corrected, and print what each changes.
+    /// Run a scenario, Experiment 1 by default, with every erratum printed and corrected, and print what each changes.
     Errata(errata::ErrataArguments),
     /// Measure ticks per second of the library alone and of the whole simulation, on one core.
     BenchTick(bench::BenchArguments),
@@ -212,7 +212,9 @@ impl Variants {
         }
         if let Some(new) = self.radius {
             let PathForm::Pieces(pieces) = &mut scenario.path.form else {
-                return Err(BadInput("--radius: this path has no arcs".into()));
+                return Err(BadInput(
+                    "--radius: this path has no arcs; allowed with a path that has some".into(),
+                ));
             };
             let mut arcs = 0;
             for piece in pieces {
@@ -222,7 +224,9 @@ impl Variants {
                 }
             }
             if arcs == 0 {
-                return Err(BadInput("--radius: this path has no arcs".into()));
+                return Err(BadInput(
+                    "--radius: this path has no arcs; allowed with a path that has some".into(),
+                ));
             }
             // With another radius the pieces need not meet any more.
             scenario.path.gaps = true;

@@ -3,6 +3,7 @@
 //! A [`scenario`] says what is driven where; [`run`] closes the loop of [`plant`], [`sensors`] and the library's own
 //! `Robot::tick`; [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
 
+pub mod control;
 pub mod metrics;
 pub mod params;
 pub mod plant;
@@ -10,6 +11,7 @@ pub mod plot;
 pub mod recorder;
 pub mod recording;
 pub mod replay;
+pub mod robot;
 pub mod run;
 pub mod scenario;
 pub mod sensors;

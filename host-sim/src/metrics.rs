@@ -3,11 +3,16 @@
 use crate::run::{Ending, Step};
 use crate::scenario::Scenario;
 use crate::si;
+use crate::world::wrap;
 use fuzzypilot::signals::{Decision, Turn};
 use serde::Serialize;
 
-/// Within this cross-track error the path counts as regained, and a free stretch begins, m.
+/// Within this cross-track error, and headed along the path within [`ALONG`], the path counts as regained, and a free
+/// stretch begins, m.
 pub const REGAINED: f64 = 0.05;
+
+/// Largest angle to the tangent at which the path counts as regained and not merely crossed, radians.
+pub const ALONG: f64 = 0.35;
 
 /// One pass of an obstacle, from first entering avoidance to last leaving it before the path is regained or another
 /// obstacle's turn comes.
@@ -42,7 +47,7 @@ pub struct Summary {
     pub ticks: u64,
     /// Simulated time, s.
     pub sim_time_s: f64,
-    /// The path was driven to its end (or all laps).
+    /// The path was driven to its end (or all laps), as the robot believes: see `odometry_error_m`.
     pub reached_end: bool,
     /// `path end`, `path missed` (over, but the robot elsewhere) or `time limit`.
     pub ended: &'static str,
@@ -54,7 +59,8 @@ pub struct Summary {
     pub cross_track_rms_m: Option<f64>,
     /// Its maximum there, m.
     pub cross_track_max_m: Option<f64>,
-    /// Ticks on free stretches: following, and the path regained (|error| ≤ 0.05 m once) since the last avoidance.
+    /// Ticks on free stretches: following, and the path regained (error at most 0.05 m
+    /// and heading within 20° of the path, once) since the last avoidance.
     pub free_ticks: u64,
     /// Distance travelled until the path was first regained, m.
     pub first_regained_after_m: Option<f64>,
@@ -88,8 +94,8 @@ impl Metrics {
     /// For a run of `scenario`.
     pub fn new(scenario: &Scenario, seed: u64) -> Self {
         let law = match scenario.control.law {
-            crate::params::LawName::Guided => "guided",
-            crate::params::LawName::Paper => "paper",
+            crate::control::LawName::Guided => "guided",
+            crate::control::LawName::Paper => "paper",
         };
         Self {
             summary: Summary {
@@ -159,7 +165,11 @@ impl Metrics {
                 let estimate = [si::from_metres(centre.x), si::from_metres(centre.y)];
                 self.avoid(tick, side, estimate);
             }
-            Decision::Follow => self.follow(tick, step.cross_track),
+            Decision::Follow => {
+                let tangent = si::from_angle(step.record.guidance.tangent);
+                let along = wrap(step.truth[2] - tangent).abs() <= ALONG;
+                self.follow(tick, step.cross_track, along);
+            }
             Decision::Stop(_) => self.leave(tick, step.cross_track),
         }
     }
@@ -192,9 +202,9 @@ impl Metrics {
         self.left_at = None;
     }
 
-    fn follow(&mut self, tick: u64, cross_track: f64) {
+    fn follow(&mut self, tick: u64, cross_track: f64, along: bool) {
         self.leave(tick, cross_track);
-        if !self.regained && cross_track.abs() <= REGAINED {
+        if !self.regained && along && cross_track.abs() <= REGAINED {
             self.regained = true;
             self.summary
                 .first_regained_after_m

@@ -1,7 +1,7 @@
 //! Turns ticks into a [`Recording`] for pictures and replay.
 
-use crate::params::beams;
 use crate::recording::{FiredView, Frame, Recording};
+use crate::robot::beams;
 use crate::run::Step;
 use crate::scenario::Scenario;
 use crate::si;

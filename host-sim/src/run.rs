@@ -1,8 +1,9 @@
 //! The loop: plant and sensors around the library's own tick.
 
-use crate::params::{beams, params};
+use crate::params::params;
 use crate::plant::{Plant, PlantSettings};
 use crate::recording::BeamView;
+use crate::robot::beams;
 use crate::scenario::{PathForm, Scenario};
 use crate::sensors::{SimDrive, SimEncoders, SimRanges};
 use crate::si;
@@ -50,10 +51,22 @@ pub enum Ending {
 pub enum RunError {
     /// Settings.
     #[error("robot settings: {0}")]
-    Params(#[from] ParamError),
+    Params(ParamError),
     /// Path.
     #[error("path: {0}")]
-    Path(#[from] PathError),
+    Path(PathError),
+}
+
+impl From<ParamError> for RunError {
+    fn from(error: ParamError) -> Self {
+        Self::Params(error)
+    }
+}
+
+impl From<PathError> for RunError {
+    fn from(error: PathError) -> Self {
+        Self::Path(error)
+    }
 }
 
 /// A path in the library's form, owned.
@@ -151,7 +164,13 @@ fn with_ring<const N: usize>(
             _ => {}
         }
         if path.is_closed() && record.guidance.laps >= scenario.laps {
-            return Ok(Ending::PathEnd);
+            // The cursor has been round; whether the robot was there, too, the last place tells.
+            let there = record.guidance.distance <= bench.robot.params().follower.end_radius;
+            return Ok(if there {
+                Ending::PathEnd
+            } else {
+                Ending::PathMissed
+            });
         }
     }
     Ok(Ending::TimeLimit)

@@ -14,6 +14,9 @@ use crate::params::{Follower, Law, Limits};
 use crate::signals::{Guidance, Twist};
 use crate::units::{Angle, Metres, MetresPerSecond, Seconds, saturate};
 
+/// What the cursor may advance in a tick although the robot stands: a pivot at a corner moves it this little.
+const SLACK: Metres = Metres::lit("0.01");
+
 /// Moves the cursor and answers where to head. `last` is the twist commanded in the tick before.
 pub fn guide(
     follower: &Follower,
@@ -26,7 +29,17 @@ pub fn guide(
 ) -> Guidance {
     let (period, latency) = timing;
     let pose = predict(pose, last, latency);
-    let fix = cursor.advance(path, pose.at, follower.reach);
+    // From a standing start the whole reach may be used to find the path. Later the nearest place runs ahead of the
+    // robot only where that is far inside a bend, and there it must not run through the path.
+    let driven = last.linear.abs().over(period);
+    let reach = if *cursor == Cursor::default() {
+        follower.reach
+    } else {
+        follower
+            .reach
+            .min(driven + driven + driven + driven + SLACK)
+    };
+    let fix = cursor.advance(path, pose.at, reach);
     let ends = !path.is_closed() && fix.remaining <= follower.arrival;
     let elsewhere = ends && fix.distance > follower.end_radius;
     let toward = match follower.law {

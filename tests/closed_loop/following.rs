@@ -1,7 +1,7 @@
 //! Free paths: accuracy at full speed, and convergence from anywhere.
 
 use crate::harness::{Run, run, scenario};
-use host_sim::params::LawName;
+use host_sim::control::LawName;
 use host_sim::scenario::Scenario;
 use host_sim::world::wrap;
 use rayon::prelude::*;

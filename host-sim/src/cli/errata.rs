@@ -4,8 +4,8 @@ use super::sweep::{many, sides};
 use super::{Variants, load, whole};
 use clap::Args;
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
+use host_sim::control::{AxisName, CoarseName, FineNn, InputName, LawName, TablesName};
 use host_sim::metrics::Summary;
-use host_sim::params::{AxisName, CoarseName, FineNn, InputName, LawName, TablesName};
 
 #[derive(Args)]
 pub struct ErrataArguments {

@@ -57,7 +57,7 @@ pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
     };
     check_folder(&folder)?;
     if let Some(file) = &arguments.json {
-        check_file(file)?;
+        check_file(file, &folder)?;
     }
 
     let progress = progress(&scenario);
@@ -85,12 +85,12 @@ pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
 }
 
 /// Refuses early what could not be written after the run.
-fn check_file(file: &Path) -> Result<(), BadInput> {
+fn check_file(file: &Path, out: &Path) -> Result<(), BadInput> {
     let folder = file.parent().filter(|p| !p.as_os_str().is_empty());
     let named = file.file_name().is_some() && !file.as_os_str().to_string_lossy().ends_with('/');
-    if !named || file.is_dir() || folder.is_some_and(|p| !p.is_dir()) {
+    if !named || file.is_dir() || folder.is_some_and(|p| !p.is_dir() && p != out) {
         return Err(BadInput(format!(
-            "--json {}: allowed is a file in an existing folder",
+            "--json {}: allowed is a file in an existing folder or the run's own",
             file.display()
         )));
     }
