@@ -1,7 +1,7 @@
 //! Paths: a borrowed slice of discrete points or of lines and arcs, open or closed. The slice may be a `static`, or a
 //! `heapless::Vec` that was filled at run time.
 
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, square};
 use crate::units::{Angle, Metres, PerMetre, saturate};
 
 /// The most pieces (segments, or gaps between points) of one path.
@@ -431,7 +431,7 @@ impl Piece {
 
     /// Path length from the piece's start to the place on its line or circle that is nearest to `place`; below zero
     /// before the start, above the length behind the end. On a circle the solution within half a turn of `hint` is
-    /// meant.
+    /// meant, and nearer to the centre than a quarter of the radius it is `hint` itself.
     pub(crate) fn project(&self, place: Point, hint: Metres) -> Metres {
         match *self {
             Self::Chord { from, to } => {
@@ -450,7 +450,12 @@ impl Piece {
                 from,
                 sweep,
             }) => {
-                let out = (place - centre).direction();
+                let offset = place - centre;
+                // Near the centre the nearest place says nothing and turns about with every step: stay.
+                if offset.norm_squared() < square(radius) >> 4 {
+                    return hint;
+                }
+                let out = offset.direction();
                 let swept = if sweep >= 0 { out - from } else { from - out };
                 let ahead = swept - angle_along(radius, hint);
                 hint + along_arc(radius, i64::from(ahead.bits()))
