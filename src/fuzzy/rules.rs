@@ -44,8 +44,9 @@ impl<const K: usize, Frac: Unsigned + LeEqU16> Consequents<K, FixedI16<Frac>> {
     /// From the output's allowed range `[least, greatest]` and the peaks in ascending order, all in the output's own
     /// format.
     ///
-    /// In a `const` or `static` these do not compile (at run time they panic, so keep it in one): no term or more than [`MAX_TERMS`]; a peak outside the range;
-    /// peaks that are equal or out of order; a peak whose weighted sum could overflow the accumulator.
+    /// In a `const` or `static` these do not compile (at run time they panic, so keep it in one): no term or more than
+    /// [`MAX_TERMS`]; a peak outside the range; peaks that are equal or out of order; a peak whose weighted sum could
+    /// overflow the accumulator.
     pub const fn new(range: [FixedI16<Frac>; 2], peaks: [FixedI16<Frac>; K]) -> Self {
         let mut wide = [0; K];
         let mut i = 0;
@@ -122,9 +123,9 @@ pub struct RuleTable<const R: usize, const C: usize, O> {
 impl<const R: usize, const C: usize, O: FixedOutput> RuleTable<R, C, O> {
     /// From the consequent term of every cell, a row of the source a row of the table, and the terms' peaks.
     ///
-    /// In a `const` or `static` these do not compile (at run time they panic, so keep it in one): a missing cell (the array's type), a [`Term::HOLE`], a term that
-    /// the consequents do not have, fewer than two or more than [`MAX_TERMS`] rows or columns, consequents of another
-    /// output format.
+    /// In a `const` or `static` these do not compile (at run time they panic, so keep it in one): a missing cell (the
+    /// array's type), a [`Term::HOLE`], a term that the consequents do not have, fewer than two or more than
+    /// [`MAX_TERMS`] rows or columns, consequents of another output format.
     pub const fn new<const K: usize>(
         terms: [[Term; C]; R],
         consequents: Consequents<K, O>,
