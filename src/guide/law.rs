@@ -12,7 +12,7 @@ use super::path::Path;
 use crate::geometry::{Point, Pose, root};
 use crate::params::{Follower, Law, Limits};
 use crate::signals::{Guidance, Twist};
-use crate::units::{Angle, Metres, MetresPerSecond, Seconds, saturate};
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, Seconds, saturate};
 
 /// What the cursor may advance in a tick although the robot stands: a pivot at a corner moves it this little.
 const SLACK: Metres = Metres::lit("0.01");
@@ -70,7 +70,11 @@ pub fn guide(
         cross_track: fix.cross_track,
         distance: fix.distance,
         tangent: fix.foot.heading,
-        curvature: cursor.curvature_ahead(path, lead),
+        curvature: if elsewhere {
+            PerMetre::ZERO
+        } else {
+            cursor.curvature_ahead(path, lead)
+        },
         heading_error: toward - pose.heading,
         progress: fix.progress,
         remaining: fix.remaining,

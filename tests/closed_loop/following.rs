@@ -150,3 +150,27 @@ fn closed_paths_and_points_are_driven() {
         assert!(rms > 1e-6 && rms <= bound, "{name}: {rms}");
     }
 }
+
+#[test]
+fn an_end_that_was_passed_by_is_driven_back_to() {
+    // Starts beyond the end and beside it; the printed law would drive on along the last tangent for ever.
+    for piece in [
+        "line = { from = [0.0, 0.0], to = [0.4, 0.0] }",
+        "arc = { centre = [0.0, 1.0], radius = 1.0, from = -90.0, sweep = 20.0 }",
+    ] {
+        let text = format!(
+            "[robot]\npreset = \"small\"\n[start]\nx = 1.5\ny = -0.6\nheading = 20.0\n\
+             [path]\n[[path.piece]]\n{piece}\n[run]\nduration = 30.0\n"
+        );
+        let scenario = host_sim::scenario::parse("beyond", "beyond.toml", &text).unwrap();
+        let mut last = [0.0; 3];
+        let ending = host_sim::run::simulate(&scenario, 1, &mut |step| last = step.truth).unwrap();
+        assert_eq!(ending, host_sim::run::Ending::PathEnd, "{piece}");
+        // The end's radius, and what 50 ms of latency predict ahead at up to 1 m/s.
+        let end = scenario.path.track().beside(1.0, 0.0);
+        assert!(
+            (last[0] - end[0]).hypot(last[1] - end[1]) < 0.2,
+            "{piece}: {last:?}"
+        );
+    }
+}
