@@ -39,8 +39,8 @@
 //!     fn counts(&mut self) -> Result<WheelCounts, Fault> { Ok(WheelCounts { left: 0, right: 0 }) }
 //! }
 //! struct Ranges;                                            // your range sensors
-//! impl RangeSensors<8> for Ranges {
-//!     fn ranges(&mut self) -> [RangeReading; 8] { [RangeReading::fresh(Range::Clear); 8] }
+//! impl RangeSensors for Ranges {
+//!     fn read(&mut self, readings: &mut [RangeReading]) { readings.fill(RangeReading::fresh(Range::Clear)) }
 //! }
 //!
 //! let params = presets::small_robot::<8>().checked()?;

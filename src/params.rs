@@ -6,6 +6,7 @@ use crate::tables::coarse::{CoarseSet, SpeedInput};
 use crate::tables::fine::{FineSet, SpeedAxis};
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, Seconds};
 use fixed::types::{I16F16, U0F32};
+use heapless::Vec;
 
 /// Body and wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,11 +145,11 @@ pub struct Mount {
     pub width: Angle,
 }
 
-/// A ring of range sensors, ordered counter-clockwise by direction.
+/// A ring of up to `N` range sensors, ordered counter-clockwise by direction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RingGeometry<const N: usize> {
-    /// The sensors.
-    pub mounts: [Mount; N],
+    /// The sensors, at least one.
+    pub mounts: Vec<Mount, N>,
     /// Whether the last one's neighbour is the first (a full circle).
     pub closed: bool,
     /// Largest range that counts; farther echoes are read as clear.
@@ -164,7 +165,7 @@ pub struct RingGeometry<const N: usize> {
     pub residual: Metres,
 }
 
-/// All settings of a robot with `N` range sensors.
+/// All settings of a robot with up to `N` range sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params<const N: usize> {
     /// Body and wheels.
@@ -210,6 +211,11 @@ impl core::error::Error for ParamError {}
 impl<const N: usize> Params<N> {
     /// The settings, if the robot can be driven with them; else the first field that forbids it.
     pub fn checked(self) -> Result<Self, ParamError> {
+        self.check().map(|()| self)
+    }
+
+    /// Whether the robot can be driven with these settings; else the first field that forbids it.
+    pub fn check(&self) -> Result<(), ParamError> {
         let positive = |ok: bool, field| check(ok, field, "above 0");
         positive(self.body.radius > Metres::ZERO, "body.radius")?;
         positive(self.body.track > Metres::ZERO, "body.track")?;
@@ -235,7 +241,11 @@ impl<const N: usize> Params<N> {
             "latency",
             "0 to 2 s",
         )?;
-        check(N >= 1 && N <= MAX_BEAMS, "ring.mounts", "1 to 64 sensors")?;
+        check(
+            (1..=MAX_BEAMS).contains(&self.ring.mounts.len()),
+            "ring.mounts",
+            "1 to 64 sensors",
+        )?;
         positive(self.ring.max_range > Metres::ZERO, "ring.max_range")?;
         positive(self.ring.gap > Metres::ZERO, "ring.gap")?;
         check(
@@ -331,8 +341,7 @@ impl<const N: usize> Params<N> {
             self.guard.braking > 0 && self.guard.braking <= self.limits.acceleration,
             "guard.braking",
             "above 0, up to limits.acceleration",
-        )?;
-        Ok(self)
+        )
     }
 }
 

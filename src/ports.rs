@@ -51,15 +51,17 @@ pub trait WheelEncoders {
     fn counts(&mut self) -> Result<WheelCounts, Fault>;
 }
 
-/// Reads a ring of `N` range sensors.
+/// Reads a ring of range sensors.
 ///
-/// *Implementers*: fill every entry in the mounting order of [`RingGeometry`](crate::params::RingGeometry). A sensor
-/// that has nothing new repeats its last reading with its age; it never repeats it as fresh.
+/// *Implementers*: fill every entry in the mounting order of [`RingGeometry`](crate::params::RingGeometry); what is not
+/// filled stays "never seen". A sensor that has nothing new repeats its last reading with its age; it never repeats it
+/// as fresh.
 ///
-/// *Callers*: treat [`Range::Invalid`] as unknown, never as free.
-pub trait RangeSensors<const N: usize> {
+/// *Callers*: hand over one entry a mounted sensor, all set to [`RangeReading::NEVER_SEEN`]; treat [`Range::Invalid`] as
+/// unknown, never as free.
+pub trait RangeSensors {
     /// The latest reading of every sensor.
-    fn ranges(&mut self) -> [RangeReading; N];
+    fn read(&mut self, readings: &mut [RangeReading]);
 }
 
 /// One sensor's latest reading.
@@ -73,6 +75,9 @@ pub struct RangeReading {
 }
 
 impl RangeReading {
+    /// What stands for a sensor that has not answered yet.
+    pub const NEVER_SEEN: Self = Self::fresh(Range::Invalid(Fault::NeverSeen));
+
     /// A reading of this very tick.
     pub const fn fresh(range: Range) -> Self {
         Self {

@@ -9,6 +9,7 @@ use crate::tables::coarse::{CoarseSet, SpeedInput};
 use crate::tables::fine::{FineSet, SpeedAxis};
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, Seconds};
 use fixed::types::{I16F16, U0F32};
+use heapless::Vec;
 
 const fn n(text: &str) -> I16F16 {
     I16F16::lit(text)
@@ -153,13 +154,20 @@ pub fn chapter_robot<const N: usize>() -> Params<N> {
 }
 
 /// `N` beams at the robot's centre, evenly all round, the first one looking back.
-fn all_round<const N: usize>() -> [Mount; N] {
-    core::array::from_fn(|i| {
+fn all_round<const N: usize>() -> Vec<Mount, N> {
+    let mount = |i: usize| {
         let turn = ((i as u64) << 32) / (N.max(1) as u64);
         let heading = Angle::HALF + Angle::from_bits(turn as u32 as i32);
         Mount {
             pose: Pose::new(Point::default(), heading),
             width: Angle::ZERO,
         }
-    })
+    };
+    let mut mounts = Vec::new();
+    for i in 0..N {
+        if mounts.push(mount(i)).is_err() {
+            break;
+        }
+    }
+    mounts
 }

@@ -6,16 +6,20 @@ use crate::geometry::Pose;
 use crate::guard::guard;
 use crate::guide::{Cursor, Path, guide};
 use crate::localise::Localiser;
-use crate::params::Params;
-use crate::ports::{Ports, RangeSensors, Side, WheelDrive, WheelEncoders};
+use crate::params::{ParamError, Params};
+use crate::ports::{Ports, RangeReading, RangeSensors, Side, WheelDrive, WheelEncoders};
 use crate::sense::{Odometer, sense_ranges};
-use crate::signals::{Behaviour, Decision, TickRecord, Twist};
+use crate::signals::{Behaviour, Decision, Sensed, TickRecord, Twist};
 use crate::supervisor::{Situation, SupervisorState};
+use crate::units::MetresPerSecond;
 
-/// A robot with `N` range sensors: its settings and everything that it remembers from tick to tick.
+/// A robot with up to `N` range sensors: its settings and everything that it remembers from tick to tick.
 #[derive(Clone, Debug)]
 pub struct Robot<const N: usize> {
     params: Params<N>,
+    // Scratch of one tick. Here, because a microcontroller's stack is small.
+    readings: [RangeReading; N],
+    sensed: Sensed,
     odometer: Odometer,
     localiser: Localiser,
     cursor: Cursor,
@@ -30,6 +34,8 @@ impl<const N: usize> Robot<N> {
         Self {
             localiser: Localiser::new(&params.body, start),
             params,
+            readings: [RangeReading::NEVER_SEEN; N],
+            sensed: Sensed::default(),
             odometer: Odometer::default(),
             cursor: Cursor::default(),
             supervisor: SupervisorState::default(),
@@ -43,6 +49,26 @@ impl<const N: usize> Robot<N> {
         &self.params
     }
 
+    /// The settings, to be changed while the robot rests. Call [`Robot::restart`] before the next tick: it checks them.
+    pub fn params_mut(&mut self) -> &mut Params<N> {
+        &mut self.params
+    }
+
+    /// Checks the settings, forgets everything and begins anew at rest at `start`.
+    ///
+    /// # Errors
+    ///
+    /// The first setting that the robot cannot be driven with; then nothing is forgotten.
+    pub fn restart(&mut self, start: Pose) -> Result<(), ParamError> {
+        self.params.check()?;
+        self.localiser = Localiser::new(&self.params.body, start);
+        self.odometer = Odometer::default();
+        self.restart_path();
+        self.last = Twist::default();
+        self.tick = 0;
+        Ok(())
+    }
+
     /// Believed pose.
     pub fn pose(&self) -> Pose {
         self.localiser.pose()
@@ -54,6 +80,22 @@ impl<const N: usize> Robot<N> {
         self.supervisor = SupervisorState::default();
     }
 
+    /// A control period without driving: both wheels are commanded to stand, dead reckoning goes on. Returns whether a
+    /// wheel could not be written.
+    pub fn rest<D, E, R>(&mut self, ports: &mut Ports<D, E, R>) -> bool
+    where
+        D: WheelDrive,
+        E: WheelEncoders,
+    {
+        let travel = self.odometer.travel(ports.encoders.counts());
+        let p = &self.params;
+        self.localiser.advance(&p.body, p.integrator, travel);
+        self.last = Twist::default();
+        let left = ports.drive.set_speed(Side::Left, MetresPerSecond::ZERO);
+        let right = ports.drive.set_speed(Side::Right, MetresPerSecond::ZERO);
+        left.is_err() || right.is_err()
+    }
+
     /// One control period: sense, localise, guide, decide, behave, guard, drive. Call it every `params.period`.
     ///
     /// Each port is used once, whatever fails; both wheels are always written.
@@ -61,14 +103,18 @@ impl<const N: usize> Robot<N> {
     where
         D: WheelDrive,
         E: WheelEncoders,
-        R: RangeSensors<N>,
+        R: RangeSensors,
     {
         let p = &self.params;
         let counts = ports.encoders.counts();
-        let ranges = ports.ranges.ranges();
+        let mounted = p.ring.mounts.len().min(N);
+        let readings = self.readings.get_mut(..mounted).unwrap_or_default();
+        readings.fill(RangeReading::NEVER_SEEN);
+        ports.ranges.read(readings);
 
         let travel = self.odometer.travel(counts);
-        let sensed = sense_ranges(&p.ring, &ranges, self.last.linear);
+        let sensed = &mut self.sensed;
+        sense_ranges(&p.ring, readings, self.last.linear, sensed);
         let pose = self.localiser.advance(&p.body, p.integrator, travel);
         let timing = (p.period, p.latency);
         let guidance = guide(
@@ -82,7 +128,7 @@ impl<const N: usize> Robot<N> {
         );
         let situation = Situation {
             robot_radius: p.body.radius,
-            sensed: &sensed,
+            sensed,
             travel,
             pose,
             guidance: &guidance,
@@ -99,13 +145,13 @@ impl<const N: usize> Robot<N> {
                 &p.avoider,
                 &p.limits,
                 p.body.radius,
-                &sensed,
+                sensed,
                 *side,
                 obstacle,
             ),
             Decision::Stop(_) => Behaviour::default(),
         };
-        let (passed, guarded) = guard(&p.guard, p.body.radius, timing, &sensed, self.last, desired);
+        let (passed, guarded) = guard(&p.guard, p.body.radius, timing, sensed, self.last, desired);
         let driven = drive(&p.body, &p.limits, p.period, self.last, passed);
 
         let left = ports.drive.set_speed(Side::Left, driven.wheels.left);

@@ -816,10 +816,12 @@ fn the_guard_stops_before_an_echo_at_any_latency() {
 /// A ring of `N` beams from the body's centre, evenly around from straight ahead.
 fn ring<const N: usize>() -> RingGeometry<N> {
     RingGeometry {
-        mounts: core::array::from_fn(|i| Mount {
-            pose: Pose::new(Point::default(), angle(i as f64 * TAU / N as f64)),
-            width: Angle::ZERO,
-        }),
+        mounts: (0..N)
+            .map(|i| Mount {
+                pose: Pose::new(Point::default(), angle(i as f64 * TAU / N as f64)),
+                width: Angle::ZERO,
+            })
+            .collect(),
         closed: true,
         max_range: metres(4.0),
         max_age: seconds(0.2),
@@ -852,7 +854,20 @@ fn look<const N: usize>(ring: &RingGeometry<N>, discs: &[(f64, f64, f64)]) -> [R
 }
 
 fn sense<const N: usize>(ring: &RingGeometry<N>, readings: &[RangeReading; N]) -> Sensed {
-    sense_ranges(ring, readings, MetresPerSecond::ZERO)
+    sense_at(ring, readings, MetresPerSecond::ZERO)
+}
+
+/// What `sense_ranges` finds at a speed, whatever stood there before.
+fn sense_at<const N: usize>(
+    ring: &RingGeometry<N>,
+    readings: &[RangeReading; N],
+    speed: MetresPerSecond,
+) -> Sensed {
+    let mut sensed = Sensed::default();
+    let before = [RangeReading::fresh(Range::Echo(metres(0.5))); N];
+    sense_ranges(ring, &before, speed, &mut sensed);
+    sense_ranges(ring, readings, speed, &mut sensed);
+    sensed
 }
 
 #[test]
@@ -872,7 +887,7 @@ fn every_kind_of_reading() {
     readings[7] = aged(Range::Echo(metres(2.0)), 0.2);
     readings[9] = echo(0.0);
     readings[11] = RangeReading::fresh(Range::Echo(Metres::MAX));
-    let sensed = sense_ranges(&ring, &readings, speed(-0.5));
+    let sensed = sense_at(&ring, &readings, speed(-0.5));
     assert_eq!(sensed.valid, 8);
     assert_eq!(sensed.echoes.len(), 3);
     let at = |i: usize| sensed.echoes[i];
@@ -888,7 +903,7 @@ fn every_kind_of_reading() {
     let mut readings = [CLEAR; 12];
     readings[0] = aged(Range::Echo(metres(0.1)), 0.2);
     assert_eq!(
-        sense_ranges(&ring, &readings, speed(3.0)).echoes[0],
+        sense_at(&ring, &readings, speed(3.0)).echoes[0],
         Point::default()
     );
 
@@ -910,7 +925,7 @@ fn a_negative_age_draws_nothing_away() {
         range: Range::Echo(metres(1.0)),
         age: seconds(-1.0),
     };
-    let sensed = sense_ranges(&ring, &readings, speed(1.0));
+    let sensed = sense_at(&ring, &readings, speed(1.0));
     assert!(sensed.nearest <= metres(1.0));
 }
 
@@ -1115,7 +1130,7 @@ proptest! {
             ring.residual = Metres::from_bits(residual);
         }
         let readings: [RangeReading; 64] = readings.try_into().unwrap();
-        let sensed = sense_ranges(&ring, &readings, MetresPerSecond::from_bits(speed));
+        let sensed = sense_at(&ring, &readings, MetresPerSecond::from_bits(speed));
         prop_assert!(usize::from(sensed.valid) >= sensed.echoes.len());
         let surface = |o: &fuzzypilot::signals::Obstacle| o.centre.norm() - o.radius;
         prop_assert!(sensed.obstacles.windows(2).all(|w| surface(&w[0]) <= surface(&w[1])));

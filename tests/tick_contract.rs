@@ -50,13 +50,15 @@ fn params<const N: usize>() -> Params<N> {
         latency: Seconds::lit("0.05"),
         integrator: Integrator::Arc,
         ring: RingGeometry {
-            mounts: std::array::from_fn(|i| Mount {
-                pose: Pose::new(
-                    Point::default(),
-                    Angle::from_degrees(num(360.0 * i as f64 / N as f64 - 180.0)),
-                ),
-                width: Angle::ZERO,
-            }),
+            mounts: (0..N)
+                .map(|i| Mount {
+                    pose: Pose::new(
+                        Point::default(),
+                        Angle::from_degrees(num(360.0 * i as f64 / N as f64 - 180.0)),
+                    ),
+                    width: Angle::ZERO,
+                })
+                .collect(),
             closed: true,
             max_range: metres(2.0),
             max_age: Seconds::lit("0.2"),
@@ -185,10 +187,10 @@ impl WheelEncoders for FakeEncoders {
     }
 }
 
-impl<const N: usize> RangeSensors<N> for FakeRanges {
-    fn ranges(&mut self) -> [RangeReading; N] {
+impl RangeSensors for FakeRanges {
+    fn read(&mut self, readings: &mut [RangeReading]) {
         self.0.note(Call::Ranges);
-        [RangeReading::fresh(Range::Clear); N]
+        readings.fill(RangeReading::fresh(Range::Clear));
     }
 }
 
@@ -228,16 +230,13 @@ impl<E: WheelEncoders, F: FnMut(u32) -> bool> WheelEncoders for Faulty<E, F> {
     }
 }
 
-impl<const N: usize, R: RangeSensors<N>, F: FnMut(u32, usize) -> Option<RangeReading>>
-    RangeSensors<N> for Faulty<R, F>
-{
-    fn ranges(&mut self) -> [RangeReading; N] {
-        let mut readings = self.port.ranges();
+impl<R: RangeSensors, F: FnMut(u32, usize) -> Option<RangeReading>> RangeSensors for Faulty<R, F> {
+    fn read(&mut self, readings: &mut [RangeReading]) {
+        self.port.read(readings);
         for (i, reading) in readings.iter_mut().enumerate() {
             *reading = (self.strikes)(self.tick, i).unwrap_or(*reading);
         }
         self.tick += 1;
-        readings
     }
 }
 
@@ -274,7 +273,7 @@ where
     }
 }
 
-impl<D: WheelDrive, E: WheelEncoders, R: RangeSensors<8>> Bench<D, E, R> {
+impl<D: WheelDrive, E: WheelEncoders, R: RangeSensors> Bench<D, E, R> {
     fn tick(&mut self, path: &Path<'_>) -> TickRecord {
         let record = self.robot.tick(path, &mut self.ports);
         self.order.complete();
@@ -395,7 +394,7 @@ fn dead_ranges_stop_the_robot_within_patience() {
     }
 }
 
-fn stops_after_the_fault<D: WheelDrive, E: WheelEncoders, R: RangeSensors<8>>(
+fn stops_after_the_fault<D: WheelDrive, E: WheelEncoders, R: RangeSensors>(
     mut bench: Bench<D, E, R>,
     path: &Path<'_>,
     reason: StopReason,
@@ -717,9 +716,9 @@ impl WheelEncoders for Wild {
     }
 }
 
-impl<const N: usize> RangeSensors<N> for Wild {
-    fn ranges(&mut self) -> [RangeReading; N] {
-        std::array::from_fn(|_| self.0.reading())
+impl RangeSensors for Wild {
+    fn read(&mut self, readings: &mut [RangeReading]) {
+        readings.fill_with(|| self.0.reading());
     }
 }
 
@@ -969,15 +968,15 @@ impl WheelEncoders for Tape {
     }
 }
 
-impl RangeSensors<32> for Tape {
-    fn ranges(&mut self) -> [RangeReading; 32] {
+impl RangeSensors for Tape {
+    fn read(&mut self, readings: &mut [RangeReading]) {
         self.1 += 1;
         let t = self.1;
         let (from, width) = (t / 7 % 32, 3 + t / 50 % 7);
-        std::array::from_fn(|i| {
+        for (i, reading) in readings.iter_mut().enumerate() {
             let seen = (i as u32 + 32 - from) % 32 < width && t % 90 > 25;
             let noise = self.0.below(1300) as i32;
-            RangeReading {
+            *reading = RangeReading {
                 range: match self.0.below(40) {
                     0 => Range::Invalid(Fault::Timeout),
                     _ if t % 300 > 280 => Range::Invalid(Fault::Bus),
@@ -987,8 +986,8 @@ impl RangeSensors<32> for Tape {
                     _ => Range::Clear,
                 },
                 age: Seconds::from_bits(self.0.below(1 << 20) as i32),
-            }
-        })
+            };
+        }
     }
 }
 

@@ -41,16 +41,17 @@ pub fn params<const N: usize>(scenario: &Scenario) -> Result<Params<N>, lib::Par
         latency: si::seconds(robot.latency),
         integrator: control.integrator(robot.preset),
         ring: RingGeometry {
-            mounts: std::array::from_fn(|i| {
-                let beam = beams.get(i).copied().unwrap_or(beams[0]);
-                Mount {
+            mounts: beams
+                .iter()
+                .take(N)
+                .map(|beam| Mount {
                     pose: Pose::new(
                         Point::new(si::metres(beam.x), si::metres(beam.y)),
                         si::angle(beam.heading),
                     ),
                     width: si::angle(beam.width),
-                }
-            }),
+                })
+                .collect(),
             closed: sensors.field_of_view >= TAU - 1e-9,
             max_range: si::metres(sensors.range),
             max_age: si::seconds((3.0 * robot.period).max(0.2)),

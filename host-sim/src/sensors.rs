@@ -148,9 +148,11 @@ impl<const N: usize> SimRanges<N> {
     }
 }
 
-impl<const N: usize> RangeSensors<N> for SimRanges<N> {
-    fn ranges(&mut self) -> [RangeReading; N] {
-        self.readings
+impl<const N: usize> RangeSensors for SimRanges<N> {
+    fn read(&mut self, readings: &mut [RangeReading]) {
+        for (reading, seen) in readings.iter_mut().zip(&self.readings) {
+            *reading = *seen;
+        }
     }
 }
 

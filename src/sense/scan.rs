@@ -8,82 +8,131 @@ use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
 use crate::units::{Angle, Metres, MetresPerSecond, Seconds, saturate};
 use heapless::Vec;
 
-/// Judges every reading, places the echoes in the body frame and makes circles of them.
+/// Judges every reading, places the echoes in the body frame and makes circles of them; what `sensed` held is gone.
 ///
 /// An echo that is `age` old is drawn nearer by `speed · age`, the worst that the robot's own motion can have done.
-/// Neighbouring echoes closer than `ring.gap` belong together; a silent or invalid sensor in between separates.
+/// Neighbouring echoes closer than `ring.gap` belong together; a silent or invalid sensor in between separates. In a
+/// closed ring the last sensor's neighbour is the first. Sensors past [`MAX_BEAMS`] are not looked at.
 pub fn sense_ranges<const N: usize>(
     ring: &RingGeometry<N>,
-    readings: &[RangeReading; N],
+    readings: &[RangeReading],
     speed: MetresPerSecond,
-) -> Sensed {
-    let mut sensed = Sensed {
-        nearest: Metres::MAX,
-        ..Sensed::default()
-    };
-    let mut segments: Vec<Segment, MAX_BEAMS> = Vec::new();
-    let mut open: Option<Segment> = None;
-    let (gap, mut nearest) = (square(ring.gap), u64::MAX);
-    for (mount, reading) in ring.mounts.iter().zip(readings) {
+    sensed: &mut Sensed,
+) {
+    sensed.echoes.clear();
+    sensed.spreads.clear();
+    sensed.obstacles.clear();
+    sensed.valid = 0;
+    let gap = square(ring.gap);
+    let near = |a: Point, b: Point| (a - b).norm_squared() <= gap;
+    // Bit i: echo i goes on where the one before it ended.
+    let mut joined = 0u64;
+    let (mut nearest, mut before) = (u64::MAX, None);
+    let mut ends = (false, false);
+    for (i, (mount, reading)) in ring.mounts.iter().zip(readings).take(MAX_BEAMS).enumerate() {
         let range = judge(ring, reading, speed);
         if !matches!(range, Range::Invalid(_)) {
             sensed.valid = sensed.valid.saturating_add(1);
         }
+        ends.1 = false;
         let Range::Echo(distance) = range else {
-            segments.extend(open.take());
+            before = None;
             continue;
         };
-        let point = mount.pose.to_world(Point::new(distance, Metres::ZERO));
+        let point = mount.pose.at + Point::polar(distance, mount.pose.heading);
         nearest = nearest.min(point.norm_squared());
-        let index = sensed.echoes.len();
-        let joins = sensed
-            .echoes
-            .last()
-            .is_some_and(|last| (point - *last).norm_squared() <= gap);
-        if sensed.echoes.push(point).is_err()
-            || sensed.spreads.push(spread(distance, mount.width)).is_err()
-        {
-            break;
+        if before.is_some_and(|last| near(point, last)) {
+            joined |= bit(sensed.echoes.len());
         }
-        open = match open.take() {
-            Some(segment) if joins => Some(Segment {
-                count: segment.count.saturating_add(1),
-                ..segment
-            }),
-            finished => {
-                segments.extend(finished);
-                Some(Segment {
-                    start: index,
-                    count: 1,
-                })
-            }
+        before = Some(point);
+        ends = (ends.0 || i == 0, true);
+        // Both have room for every beam that is looked at.
+        let _ = sensed.echoes.push(point);
+        let _ = sensed.spreads.push(spread(distance, mount.width));
+    }
+    sensed.nearest = match nearest {
+        u64::MAX => Metres::MAX,
+        nearest => root(nearest),
+    };
+    let count = sensed.echoes.len();
+    if let (true, (true, true), [first, .., last]) = (ring.closed, ends, sensed.echoes.as_slice())
+        && near(*first, *last)
+    {
+        joined |= 1;
+    }
+    // A segment may go round the end of the list: begin where one begins.
+    let start = joined.trailing_ones() as usize;
+    let start = if start >= count { 0 } else { start };
+    let mut keys = Vec::new();
+    let mut from = start;
+    for step in 1..=count {
+        let to = start.saturating_add(step);
+        let index = if to >= count {
+            to.saturating_sub(count)
+        } else {
+            to
         };
-    }
-    segments.extend(open);
-    if nearest < u64::MAX {
-        sensed.nearest = root(nearest);
-    }
-    if ring.closed {
-        join_ends(ring, readings, &mut sensed, &mut segments);
-    }
-    for segment in &segments {
-        let end = segment.start.saturating_add(segment.count);
-        let pieces = (
-            sensed.echoes.get(segment.start..end),
-            sensed.spreads.get(segment.start..end),
-        );
-        if let (Some(points), Some(spreads)) = pieces {
-            insert(&mut sensed.obstacles, circle_of(ring, points, spreads));
+        if step < count && joined & bit(index) != 0 {
+            continue;
         }
+        let obstacle = circle_of(ring, &Run::of(sensed, from, to));
+        insert(&mut sensed.obstacles, &mut keys, obstacle);
+        from = to;
     }
-    sensed
 }
 
-/// Consecutive echoes of one obstacle.
-#[derive(Clone, Copy)]
-struct Segment {
-    start: usize,
-    count: usize,
+/// One bit for each echo.
+const fn bit(index: usize) -> u64 {
+    1u64.wrapping_shl(index as u32)
+}
+
+/// Consecutive echoes of one obstacle: up to the end of the list, and on from its beginning.
+struct Run<'a> {
+    points: [&'a [Point]; 2],
+    spreads: [&'a [Metres]; 2],
+}
+
+impl<'a> Run<'a> {
+    /// The echoes `from..to`, counted on past the end of the list.
+    fn of(sensed: &'a Sensed, from: usize, to: usize) -> Self {
+        let count = sensed.echoes.len();
+        let (head, tail) = (from..to.min(count), ..to.saturating_sub(count));
+        Self {
+            points: [
+                sensed.echoes.get(head.clone()).unwrap_or_default(),
+                sensed.echoes.get(tail).unwrap_or_default(),
+            ],
+            spreads: [
+                sensed.spreads.get(head).unwrap_or_default(),
+                sensed.spreads.get(tail).unwrap_or_default(),
+            ],
+        }
+    }
+
+    fn points(&self) -> impl Iterator<Item = Point> + Clone {
+        let [head, tail] = self.points;
+        head.iter().chain(tail).copied()
+    }
+
+    fn spreads(&self) -> impl Iterator<Item = Metres> {
+        let [head, tail] = self.spreads;
+        head.iter().chain(tail).copied()
+    }
+
+    fn count(&self) -> usize {
+        let [head, tail] = self.points;
+        head.len().saturating_add(tail.len())
+    }
+
+    fn ends(&self) -> (Point, Point) {
+        let [head, tail] = self.points;
+        let first = head.first().or(tail.first());
+        let last = tail.last().or(head.last());
+        (
+            first.copied().unwrap_or_default(),
+            last.copied().unwrap_or_default(),
+        )
+    }
 }
 
 fn judge<const N: usize>(
@@ -103,71 +152,34 @@ fn judge<const N: usize>(
     }
 }
 
-/// In a closed ring the last segment may go on in the first: rotate the echoes so that it is one piece.
-fn join_ends<const N: usize>(
-    ring: &RingGeometry<N>,
-    readings: &[RangeReading; N],
-    sensed: &mut Sensed,
-    segments: &mut Vec<Segment, MAX_BEAMS>,
-) {
-    let echo = |reading: Option<&RangeReading>| {
-        reading.is_some_and(|r| matches!(judge(ring, r, MetresPerSecond::ZERO), Range::Echo(_)))
-    };
-    let (Some(first), Some(last)) = (sensed.echoes.first(), sensed.echoes.last()) else {
-        return;
-    };
-    let meet = echo(readings.first())
-        && echo(readings.last())
-        && segments.len() >= 2
-        && (*last - *first).norm_squared() <= square(ring.gap);
-    if !meet {
-        return;
-    }
-    let Some(tail) = segments.pop() else { return };
-    sensed.echoes.rotate_right(tail.count);
-    sensed.spreads.rotate_right(tail.count);
-    for segment in segments.iter_mut() {
-        segment.start = segment.start.saturating_add(tail.count);
-    }
-    if let Some(head) = segments.first_mut() {
-        head.start = 0;
-        head.count = head.count.saturating_add(tail.count);
-    }
-}
-
 /// The circle behind a segment.
 ///
 /// A fit is believed with at least [`ENOUGH`] echoes, a radius and residual within the ring's bounds, and a sagitta of
 /// the arc seen that is not lost in that residual (a flatter arc says nothing about its radius). Otherwise the
 /// disc that can have made the echoes stands in: as wide as they are, and to either side half a beam's spacing or half a
 /// cone's width, whichever is more; its surface through the nearest.
-fn circle_of<const N: usize>(
-    ring: &RingGeometry<N>,
-    points: &[Point],
-    spreads: &[Metres],
-) -> Obstacle {
+fn circle_of<const N: usize>(ring: &RingGeometry<N>, run: &Run<'_>) -> Obstacle {
     let [least, most] = ring.radius;
-    let echoes = u8::try_from(points.len()).unwrap_or(u8::MAX);
-    let first = points.first().copied().unwrap_or_default();
-    let last = points.last().copied().unwrap_or_default();
+    let echoes = u8::try_from(run.count()).unwrap_or(u8::MAX);
+    let (first, last) = run.ends();
     let width = (last - first).norm();
-    let nearest = root(points.iter().map(|p| p.norm_squared()).min().unwrap_or(0));
+    let nearest = root(run.points().map(Point::norm_squared).min().unwrap_or(0));
     // Between echoes lie count − 1 spaces; half of one to either side covers what the outermost beams just missed. A
     // single echo shows no space: there it is the ring's.
     let missed = match i32::from(echoes).checked_sub(1).filter(|n| *n > 0) {
         Some(spaces) => Metres::from_bits(width.bits().checked_div(spaces).unwrap_or(0) >> 1),
         None => spread(nearest, pitch(ring)),
     };
-    let cone = spreads.iter().copied().max().unwrap_or(Metres::ZERO);
+    let cone = run.spreads().max().unwrap_or(Metres::ZERO);
     let half_width = Metres::from_bits(width.bits() >> 1) + missed.max(cone);
-    if points.len() >= ENOUGH
-        && let Some(fit) = fit_circle(points)
+    if run.count() >= ENOUGH
+        && let Some(fit) = fit_circle(run.points())
         && fit.radius >= least
         && fit.radius <= most
         && sagitta(half_width, fit.radius) >= ring.residual
         && fit.residual <= ring.residual
-        && points
-            .iter()
+        && run
+            .points()
             .any(|p| p.norm_squared() < fit.centre.norm_squared())
     {
         return Obstacle {
@@ -213,18 +225,35 @@ fn sagitta(half_chord: Metres, radius: Metres) -> Metres {
 /// Echoes from which a fit is believed: with fewer, a centimetre of noise doubles the radius.
 const ENOUGH: usize = 5;
 
-/// Keeps the list sorted by free distance and, when full, drops the farthest.
-fn insert(obstacles: &mut Vec<Obstacle, MAX_OBSTACLES>, new: Obstacle) {
-    let key = |o: &Obstacle| o.centre.norm() - o.radius;
-    let place = obstacles.iter().position(|o| key(o) > key(&new));
-    if obstacles.is_full() {
-        if place.is_none() {
+/// Keeps the list sorted by the distance of the surface, which `keys` holds, and drops the farthest when full.
+fn insert(
+    obstacles: &mut Vec<Obstacle, MAX_OBSTACLES>,
+    keys: &mut Vec<Metres, MAX_OBSTACLES>,
+    new: Obstacle,
+) {
+    let key = new.centre.norm() - new.radius;
+    if obstacles.push(new).is_err() || keys.push(key).is_err() {
+        let last = (obstacles.last_mut(), keys.last_mut());
+        let (Some(obstacle), Some(farthest)) = last else {
+            return;
+        };
+        if *farthest <= key {
             return;
         }
-        obstacles.pop();
+        (*obstacle, *farthest) = (new, key);
     }
-    let place = place.unwrap_or(obstacles.len()).min(obstacles.len());
-    if obstacles.insert(place, new).is_err() {
-        // Unreachable: there is room and the place is inside.
+    // Down to its place: neighbours swap while they are the wrong way round.
+    let mut at = keys.len();
+    while at >= 2 {
+        at = at.saturating_sub(1);
+        let pair = keys.get_mut(at.saturating_sub(1)..=at);
+        let Some([left, right]) = pair else { return };
+        if *left <= *right {
+            return;
+        }
+        core::mem::swap(left, right);
+        if let Some([left, right]) = obstacles.get_mut(at.saturating_sub(1)..=at) {
+            core::mem::swap(left, right);
+        }
     }
 }

@@ -79,10 +79,10 @@ impl<const N: usize> WheelEncoders for Player<'_, N> {
     }
 }
 
-impl<const N: usize> RangeSensors<N> for Player<'_, N> {
-    fn ranges(&mut self) -> [RangeReading; N] {
+impl<const N: usize> RangeSensors for Player<'_, N> {
+    fn read(&mut self, readings: &mut [RangeReading]) {
         self.at += 1;
-        self.tape.ranges[self.at - 1]
+        readings.copy_from_slice(&self.tape.ranges[self.at - 1]);
     }
 }
 
