@@ -1,8 +1,9 @@
 //! Twist to wheel speeds, within the robot's limits.
 
+use crate::integer::{quotient, ratio, saturate};
 use crate::params::{Body, Limits};
 use crate::signals::{Twist, WheelCommand};
-use crate::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds, saturate};
+use crate::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds};
 use fixed::types::I16F16;
 
 /// What the limits make of a wanted twist.
@@ -55,11 +56,14 @@ pub fn drive(body: &Body, limits: &Limits, period: Seconds, last: Twist, wanted:
     let left_for =
         |used: MetresPerSecond| (limits.wheel_speed - used.abs()).max(MetresPerSecond::ZERO);
     let room = left_for(MetresPerSecond::from_bits(linear));
-    let most = (i64::from(room.bits()) << 16)
-        .checked_div(i64::from(arm.bits()))
-        .map_or(i32::MAX, saturate);
-    let angular = towards(last.angular.bits(), angular.min(most).max(-most), yaw_step);
     let angular = RadiansPerSecond::from_bits(angular);
+    let angular = if angular.at(arm).abs() <= room {
+        angular
+    } else {
+        let most = quotient(i64::from(room.bits()) << 16, arm.bits()).map_or(i32::MAX, saturate);
+        let held = angular.limit(RadiansPerSecond::from_bits(most));
+        RadiansPerSecond::from_bits(towards(last.angular.bits(), held.bits(), yaw_step))
+    };
     let twist = Twist {
         linear: MetresPerSecond::from_bits(linear).limit(left_for(angular.at(arm))),
         angular,
@@ -83,12 +87,4 @@ fn shrink(twist: Twist, value: i32, limit: i32) -> Twist {
         linear: MetresPerSecond::from_bits(ratio(twist.linear.bits(), limit, value)),
         angular: RadiansPerSecond::from_bits(ratio(twist.angular.bits(), limit, value)),
     }
-}
-
-/// value · numerator / denominator.
-fn ratio(value: i32, numerator: i32, denominator: i32) -> i32 {
-    i64::from(value)
-        .wrapping_mul(numerator.into())
-        .checked_div(denominator.into())
-        .map_or(0, saturate)
 }

@@ -1,6 +1,7 @@
 //! Points and poses in the plane, in fixed point. x forward (or east), y left (or north), counter-clockwise positive.
 
-use crate::units::{Angle, Metres, saturate};
+use crate::integer::{saturate, square_root};
+use crate::units::{Angle, Metres};
 use fixed::types::I2F30;
 
 /// A point or a displacement, metres.
@@ -21,8 +22,7 @@ impl Point {
 
     /// The point at `distance` in direction `heading`.
     pub fn polar(distance: Metres, heading: Angle) -> Self {
-        let (cos, sin) = heading.cos_sin();
-        Self::new(times(distance, cos), times(distance, sin))
+        heading.rotation().ahead(distance)
     }
 
     /// Length; exact to one step, saturates.
@@ -42,11 +42,67 @@ impl Point {
 
     /// Rotated counter-clockwise by `angle`.
     pub fn rotated(self, angle: Angle) -> Self {
-        let (cos, sin) = angle.cos_sin();
-        Self::new(
-            times(self.x, cos) - times(self.y, sin),
-            times(self.x, sin) + times(self.y, cos),
+        angle.rotation().forth(self)
+    }
+}
+
+/// A turn, ready to be applied to many points: cosine and sine of its angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rotation {
+    cos: I2F30,
+    sin: I2F30,
+}
+
+impl Angle {
+    /// The turn by this angle.
+    pub fn rotation(self) -> Rotation {
+        let (cos, sin) = self.cos_sin();
+        Rotation { cos, sin }
+    }
+}
+
+impl Rotation {
+    /// No turn.
+    pub const NONE: Self = Self {
+        cos: I2F30::ONE,
+        sin: I2F30::ZERO,
+    };
+
+    /// `point` turned counter-clockwise.
+    pub fn forth(self, point: Point) -> Point {
+        Point::new(
+            times(point.x, self.cos) - times(point.y, self.sin),
+            times(point.x, self.sin) + times(point.y, self.cos),
         )
+    }
+
+    /// `point` turned back, clockwise.
+    pub fn back(self, point: Point) -> Point {
+        Point::new(
+            times(point.x, self.cos) + times(point.y, self.sin),
+            times(point.y, self.cos) - times(point.x, self.sin),
+        )
+    }
+
+    /// The point at `distance` in this direction.
+    pub fn ahead(self, distance: Metres) -> Point {
+        Point::new(times(distance, self.cos), times(distance, self.sin))
+    }
+
+    /// A quarter turn further, counter-clockwise.
+    pub fn left(self) -> Self {
+        Self {
+            cos: -self.sin,
+            sin: self.cos,
+        }
+    }
+
+    /// A quarter turn less.
+    pub fn right(self) -> Self {
+        Self {
+            cos: self.sin,
+            sin: -self.cos,
+        }
     }
 }
 
@@ -93,8 +149,8 @@ impl Pose {
 
 /// Length times a cosine or sine, rounded to nearest.
 pub(crate) fn times(length: Metres, ratio: I2F30) -> Metres {
-    let wide = i64::from(length.bits()) * i64::from(ratio.to_bits());
-    Metres::from_bits(saturate((wide + (1 << 29)) >> 30))
+    let wide = i64::from(length.bits()).wrapping_mul(ratio.to_bits().into());
+    Metres::from_bits(saturate(wide.wrapping_add(1 << 29) >> 30))
 }
 
 /// Square of a length, in squares of a step.
@@ -110,5 +166,5 @@ pub(crate) fn leg(c: Metres, a: Metres) -> Metres {
 
 /// Root of a sum of squares, rounded down to a step; saturates.
 pub(crate) fn root(square: u64) -> Metres {
-    Metres::from_bits(saturate(square.isqrt() as i64))
+    Metres::from_bits(i32::try_from(square_root(square)).unwrap_or(i32::MAX))
 }

@@ -1,10 +1,11 @@
 //! The last barrier before the wheels: the straight corridor ahead must be free over the braking distance. It sees
 //! echoes, knows nothing of paths, rules or modes, and may only slow or stop.
 
-use crate::geometry::leg;
+use crate::geometry::{leg, root};
+use crate::integer::{quotient, saturate};
 use crate::params::Guard;
 use crate::signals::{Sensed, Twist};
-use crate::units::{Metres, MetresPerSecond, Seconds, saturate};
+use crate::units::{Metres, MetresPerSecond, Seconds};
 
 /// Limits the speed so that the robot's disc, grown by the margin, stops before the nearest echo in its corridor.
 ///
@@ -26,11 +27,16 @@ pub fn guard(
     let reaction = period + latency;
     let reach = radius + params.margin;
     let mut free = Metres::MAX;
-    for (i, echo) in sensed.echoes.iter().enumerate() {
+    let unknown = core::iter::repeat(&Metres::ZERO);
+    for (echo, spread) in sensed
+        .echoes
+        .iter()
+        .zip(sensed.spreads.iter().chain(unknown))
+    {
         // The place nearest to the corridor's middle that the echo may come from.
-        let spread = sensed.spreads.get(i).copied().unwrap_or_default();
-        let beside = (echo.y.abs() - spread).max(Metres::ZERO);
-        if echo.x > Metres::ZERO && beside < reach {
+        let beside = (echo.y.abs() - *spread).max(Metres::ZERO);
+        // Nearer than its x less the whole reach it cannot be: most echoes need no root.
+        if echo.x > Metres::ZERO && beside < reach && echo.x - reach < free {
             free = free.min((echo.x - leg(reach, beside)).max(Metres::ZERO));
         }
     }
@@ -42,12 +48,13 @@ pub fn guard(
     let under_way = (last.linear.max(MetresPerSecond::ZERO) + faster).over(latency);
     let free = (free - under_way).max(Metres::ZERO);
     let distance = u64::from(free.bits().unsigned_abs());
-    let by_reaction = (i64::from(free.bits()) << 23)
-        .checked_div(i64::from(reaction.bits()))
-        .map_or(i32::MAX, saturate);
+    let by_reaction = quotient(i64::from(free.bits()) << 23, reaction.bits());
     let braking = u64::from(params.braking.to_bits().unsigned_abs());
-    let by_braking = saturate(braking.saturating_mul(distance).isqrt() as i64);
-    let limit = MetresPerSecond::from_bits(by_reaction.min(by_braking));
+    let by_braking = root(braking.saturating_mul(distance));
+    let limit = by_reaction
+        .map_or(i32::MAX, saturate)
+        .min(by_braking.bits());
+    let limit = MetresPerSecond::from_bits(limit);
     if wanted.linear <= limit {
         return (wanted, false);
     }

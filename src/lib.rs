@@ -59,6 +59,7 @@ pub mod fuzzy;
 pub mod geometry;
 pub mod guard;
 pub mod guide;
+mod integer;
 pub mod localise;
 pub mod params;
 pub mod ports;

@@ -4,9 +4,10 @@
 //! up; the place is rounded to 60 nm a tick, without bias.
 
 use crate::geometry::{Point, Pose};
+use crate::integer::{divide, saturate};
 use crate::params::{Body, Integrator};
 use crate::signals::Travel;
-use crate::units::{Angle, Metres, saturate};
+use crate::units::{Angle, Metres};
 
 /// Dead reckoning from wheel counts.
 #[derive(Clone, Copy, Debug)]
@@ -23,15 +24,15 @@ pub struct Localiser {
 impl Localiser {
     /// Starts at `pose`.
     pub fn new(body: &Body, pose: Pose) -> Self {
-        // metres_per_count / (2π · track) turns a count; × 2^48. Numerator m·2^32 · 2^32; denominator m·2^16.
-        const TURN: i128 = 683_565_276; // 2^32 / 2π
-        let numerator = (i128::from(body.metres_per_count.to_bits()) * TURN) << 16;
-        let track = i128::from(body.track.bits().max(1)) << 16;
+        // metres_per_count / (2π · track) turns a count; × 2^48. Numerator m·2^32 · 2^32, below 2^62; denominator m·2^16.
+        const TURN: u64 = 683_565_276; // 2^32 / 2π
+        let numerator = u64::from(body.metres_per_count.to_bits()).wrapping_mul(TURN);
+        let track = body.track.max(Metres::from_bits(1)).bits().unsigned_abs();
         Self {
             x: i64::from(pose.at.x.bits()) << 16,
             y: i64::from(pose.at.y.bits()) << 16,
             heading: i64::from(pose.heading.bits()) << 16,
-            turn_per_count: i64::try_from(numerator / track).unwrap_or(i64::MAX),
+            turn_per_count: divide(numerator, track).unwrap_or(0) as i64,
         }
     }
 
@@ -50,10 +51,11 @@ impl Localiser {
             const MOST: i64 = 1 << 28;
             let bounded = |counts: i32| i64::from(counts).clamp(-MOST, MOST);
             let (left, right) = (bounded(left), bounded(right));
-            let turned = (right - left).wrapping_mul(self.turn_per_count);
+            let turned = right.wrapping_sub(left).wrapping_mul(self.turn_per_count);
             // Mean travel, m·2^32 → m·2^24 (60 nm): the product with a cosine then fits 64 bits.
             let per_count = i64::from(body.metres_per_count.to_bits());
-            let travelled = i64::from(saturate(((left + right) * per_count + (1 << 8)) >> 9));
+            let sum = left.wrapping_add(right).wrapping_mul(per_count);
+            let travelled = i64::from(saturate(sum.wrapping_add(1 << 8) >> 9));
             let turned_bits = (turned >> 16) as i32;
             let (heading, travelled) = match rule {
                 Integrator::Euler => (self.heading, travelled),
@@ -64,7 +66,8 @@ impl Localiser {
             };
             let (cos, sin) = Angle::from_bits((heading >> 16) as i32).cos_sin();
             // m·2^24 × 2^30 → m·2^32.
-            let project = |ratio: i32| (travelled * i64::from(ratio) + (1 << 21)) >> 22;
+            let project =
+                |ratio: i32| travelled.wrapping_mul(ratio.into()).wrapping_add(1 << 21) >> 22;
             self.x = self.x.saturating_add(project(cos.to_bits()));
             self.y = self.y.saturating_add(project(sin.to_bits()));
             self.heading = self.heading.wrapping_add(turned);
@@ -78,10 +81,13 @@ impl Localiser {
 fn chord(arc: i64, turned: i32) -> i64 {
     let radians =
         i64::from(Angle::from_bits(turned).radians().to_bits()).clamp(-(2 << 16), 2 << 16);
-    let square = radians * radians; // 32 fractional bits, at most 4
-    let fourth = (square >> 16) * (square >> 16);
-    let shortening = square / 24 - fourth / 1920;
-    arc - ((arc * shortening) >> 32)
+    // 32 fractional bits, at most 4; the products below stay under 2^57.
+    let square = radians.wrapping_mul(radians);
+    let fourth = (square >> 16).wrapping_mul(square >> 16);
+    // 2^26/24 and 2^26/1920.
+    let shortening = square.wrapping_mul(2_796_203) >> 26;
+    let shortening = shortening.wrapping_sub(fourth.wrapping_mul(34_953) >> 26);
+    arc.wrapping_sub(arc.wrapping_mul(shortening) >> 32)
 }
 
 fn narrow(wide: i64) -> Metres {

@@ -231,13 +231,15 @@ impl<const N: usize> Params<N> {
             self.limits.wheel_speed > MetresPerSecond::ZERO,
             "limits.wheel_speed",
         )?;
+        const SHORTEST: Seconds = Seconds::lit("0.001");
+        const LONGEST: Seconds = Seconds::lit("2");
         check(
-            self.period >= Seconds::lit("0.001") && self.period <= Seconds::lit("2"),
+            (SHORTEST..=LONGEST).contains(&self.period),
             "period",
             "1 ms to 2 s",
         )?;
         check(
-            self.latency >= Seconds::ZERO && self.latency <= Seconds::lit("2"),
+            (Seconds::ZERO..=LONGEST).contains(&self.latency),
             "latency",
             "0 to 2 s",
         )?;

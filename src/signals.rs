@@ -3,7 +3,7 @@
 //! Frames: *world* is the odometry frame, in which the path is given too; *body* is the robot's, x forward, y left.
 
 use crate::fuzzy::FiredRule;
-use crate::geometry::{Point, Pose, leg};
+use crate::geometry::{Point, Pose, Rotation, root, square};
 use crate::params::MAX_BEAMS;
 use crate::ports::Fault;
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
@@ -37,15 +37,28 @@ impl Obstacle {
         (self.centre.norm() - self.radius - robot_radius).max(Metres::ZERO)
     }
 
+    /// Whether the [`free_distance`](Self::free_distance) is below `limit`. Compares squares: no root.
+    pub fn is_nearer(&self, robot_radius: Metres, limit: Metres) -> bool {
+        let reach = self.radius + robot_radius + limit;
+        limit > Metres::ZERO && reach > Metres::ZERO && self.centre.norm_squared() < square(reach)
+    }
+
     /// β/2 of the chapter's unfeasible region: half the angle that the obstacle, its radius grown by `grown`, subtends.
     /// A quarter turn when the robot is inside the grown circle.
     pub fn unfeasible_half_angle(&self, grown: Metres) -> Angle {
         let reach = self.radius + grown;
-        let distance = self.centre.norm();
-        if distance <= reach {
-            return Angle::QUARTER;
+        let beyond = self.centre.norm_squared().checked_sub(square(reach));
+        match beyond {
+            None | Some(0) => Angle::QUARTER,
+            Some(leg) => Angle::of(root(leg).bits(), reach.bits()),
         }
-        Angle::of(leg(distance, reach).bits(), reach.bits())
+    }
+
+    /// Whether the direction `way` lies in the unfeasible region, edges not included: the obstacle, its radius grown by
+    /// `grown`, stands on that ray.
+    pub fn covers(&self, way: Rotation, grown: Metres) -> bool {
+        let seen = way.back(self.centre);
+        seen.x > Metres::ZERO && seen.y.abs() < self.radius + grown
     }
 }
 

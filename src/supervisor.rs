@@ -1,7 +1,7 @@
 //! The higher level: which sub-task runs. Thresholds, dwell and side commitment are assumed; the chapter gives none,
 //! and with a single threshold robots chatter.
 
-use crate::geometry::{Point, Pose, square};
+use crate::geometry::{Point, Pose, Rotation, square};
 use crate::params::{Avoider, Supervisor};
 use crate::signals::{Decision, Guidance, Obstacle, Sensed, StopReason, Travel, Turn};
 use crate::units::{Angle, Metres};
@@ -157,8 +157,8 @@ impl SupervisorState {
             .sensed
             .obstacles
             .iter()
-            .map(|o| ((o.centre - expected).norm(), o))
-            .filter(|(miss, _)| *miss <= params.same)
+            .map(|o| ((o.centre - expected).norm_squared(), o))
+            .filter(|(miss, _)| *miss <= square(params.same))
             .min_by_key(|(miss, _)| *miss);
         match seen {
             Some((_, obstacle)) => {
@@ -221,7 +221,7 @@ impl SupervisorState {
         let obstacle = threat(params, avoider, now)?;
         let centre = now.pose.to_world(obstacle.centre);
         let side = match &self.held {
-            Some(last) if (last.centre - centre).norm() <= params.same => last.side,
+            Some(last) if (last.centre - centre).norm_squared() <= square(params.same) => last.side,
             _ => choose_side(params, now, &obstacle),
         };
         Some(Held {
@@ -272,7 +272,7 @@ impl SupervisorState {
             return;
         };
         let centre = now.pose.to_world(obstacle.centre);
-        if (centre - held.centre).norm() > params.same {
+        if (centre - held.centre).norm_squared() > square(params.same) {
             held.centre = centre;
             held.obstacle = obstacle;
             held.unseen = 0;
@@ -284,15 +284,14 @@ impl SupervisorState {
 /// margin does not come into the way again by a noisy estimate.
 fn threat(params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) -> Option<Obstacle> {
     let grown = now.robot_radius + Metres::from_bits(avoider.margin.bits() >> 1);
+    let way = now.guidance.heading_error.rotation();
+    let near = Metres::from_bits(params.enter.bits() >> 1);
     now.sensed.obstacles.iter().copied().find(|obstacle| {
-        let free = obstacle.free_distance(now.robot_radius);
-        let half = obstacle.unfeasible_half_angle(grown);
-        let covers = |way: Angle| (obstacle.bearing() - way).abs().bits() < half.bits();
-        let near = Metres::from_bits(params.enter.bits() >> 1);
+        let within = |limit| obstacle.is_nearer(now.robot_radius, limit);
         // What stands beyond the path's end is nobody's business.
-        free < now.guidance.remaining
-            && ((free < params.enter && covers(now.guidance.heading_error))
-                || (free < near && covers(Angle::ZERO)))
+        within(now.guidance.remaining)
+            && ((within(params.enter) && obstacle.covers(way, grown))
+                || (within(near) && obstacle.covers(Rotation::NONE, grown)))
     })
 }
 

@@ -12,6 +12,7 @@
 //! Linear quantities **saturate** at the ends of their range; angles **wrap**, on purpose and for free. No
 //! operation here can panic.
 
+use crate::integer::saturate;
 use core::ops::{Add, Neg, Sub};
 use fixed::types::{I2F30, I8F24, I16F16};
 
@@ -123,17 +124,6 @@ quantity!(
     Seconds, I8F24
 );
 
-/// Narrows to `i32`, saturating.
-pub(crate) const fn saturate(wide: i64) -> i32 {
-    if wide > i32::MAX as i64 {
-        i32::MAX
-    } else if wide < i32::MIN as i64 {
-        i32::MIN
-    } else {
-        wide as i32
-    }
-}
-
 impl MetresPerSecond {
     /// Distance covered in `time`.
     pub const fn over(self, time: Seconds) -> Metres {
@@ -188,9 +178,14 @@ impl Angle {
 
     /// From degrees; any number of turns, wrapped; rounded to the binary angle's step of 8.4e-8°.
     pub const fn from_degrees(degrees: I16F16) -> Self {
-        // 2^32 / 360 / 2^16 = 2^16 / 360 per raw degree step.
-        let raw = degrees.to_bits() as i64;
-        Self((((raw << 32) / 360 + (1 << 15)) >> 16) as i32)
+        // 2^32 / 360 / 2^16 = 8192 / 45 a raw degree step: whole 45ths first, so that 32 bits are enough.
+        let raw = degrees.to_bits();
+        let (whole, rest) = (raw.div_euclid(45), raw.rem_euclid(45));
+        Self(
+            whole
+                .wrapping_mul(8192)
+                .wrapping_add((rest * 8192 + 22) / 45),
+        )
     }
 
     /// Parses degrees written as a decimal literal; in a `const` a malformed one does not compile.
@@ -201,8 +196,9 @@ impl Angle {
     /// From radians with 28 fractional bits, any number of turns, wrapped.
     const fn from_radians_q28(radians: i64) -> Self {
         // 2^32 / 2π = 683 565 275.6; times 2^4 to keep the remainder, then >> (28 + 4).
-        const TURN: i128 = 10_937_044_409;
-        Self(((radians as i128 * TURN) >> 32) as i32)
+        const TURN: i64 = 10_937_044_409;
+        // What wraps out of 64 bits are whole turns.
+        Self((radians.wrapping_mul(TURN) >> 32) as i32)
     }
 
     /// From radians; any number of turns, wrapped.

@@ -170,9 +170,10 @@ fn breaches(sources: &[Source]) -> Vec<String> {
                 "tick" | "lib" => false,
                 // The tables know the engine alone.
                 "tables" => !matches!(name, "tables" | "fuzzy"),
-                // Units and geometry are below everything.
-                "units" => name != "units",
-                "geometry" => !matches!(name, "geometry" | "units"),
+                // Integers, units and geometry are below everything.
+                "integer" => name != "integer",
+                "units" => !matches!(name, "units" | "integer"),
+                "geometry" => !matches!(name, "geometry" | "units" | "integer"),
                 _ => {
                     (STAGES.contains(&name) || matches!(name, "tick" | "supervisor")) && name != own
                 }

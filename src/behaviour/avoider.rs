@@ -14,9 +14,11 @@
 //! edge of the region.
 
 use super::follower::rate_of;
+use crate::geometry::square;
+use crate::integer::{ratio, saturate};
 use crate::params::{Avoider, Limits};
 use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Turn, Twist};
-use crate::units::{Angle, Metres, MetresPerSecond, saturate};
+use crate::units::{Angle, Metres, MetresPerSecond};
 use fixed::types::I16F16;
 
 /// Least angle by which a heading must clear the unfeasible region: keeps the strict ">" of the chapter after rounding.
@@ -38,9 +40,11 @@ pub fn avoid(
     };
     let grown = robot_radius + avoider.margin;
     let theta = mirror(held.bearing());
-    let share = (i64::from(held.free_distance(robot_radius).bits()) << 16)
-        .checked_div(i64::from(avoider.range.bits()))
-        .map_or(0, saturate);
+    let share = ratio(
+        held.free_distance(robot_radius).bits(),
+        1 << 16,
+        avoider.range.bits(),
+    );
     let (s, theta_degrees) = (I16F16::from_bits(share), theta.degrees());
     let out = avoider
         .tables
@@ -62,16 +66,24 @@ pub fn avoid(
     };
     // A right turn by wanted − θ, as a direction in the mirrored body frame (left positive there, too).
     let mut direction = theta - wanted;
+    let behind = held.centre.norm() + held.radius;
+    let mut way = mirror(direction).rotation();
     // Every push goes to the right, so as many passes as obstacles reach the end.
     for _ in 0..sensed.obstacles.len() {
+        let mut pushed = false;
         for other in &sensed.obstacles {
-            let near = other.free_distance(robot_radius) < avoider.range;
-            let bearing = mirror(other.bearing());
-            let half = other.unfeasible_half_angle(grown);
-            let off = bearing - direction;
-            if near && off.abs().bits() < half.bits() && blocks_sooner(other, held) {
-                direction = bearing - half - EDGE;
+            let near = other.is_nearer(robot_radius, avoider.range);
+            // What stands behind the held one does not matter yet.
+            let sooner = other.centre.norm_squared() < square(behind + other.radius);
+            if near && sooner && other.covers(way, grown) {
+                let bearing = mirror(other.bearing());
+                direction = bearing - other.unfeasible_half_angle(grown) - EDGE;
+                way = mirror(direction).rotation();
+                pushed = true;
             }
+        }
+        if !pushed {
+            break;
         }
     }
     let turn = mirror(direction);
@@ -91,9 +103,4 @@ pub fn avoid(
             speed_rules: out.speed_rules.fired(),
         },
     }
-}
-
-/// An obstacle behind the held one does not matter yet.
-fn blocks_sooner(other: &Obstacle, held: &Obstacle) -> bool {
-    other.centre.norm() - other.radius < held.centre.norm() + held.radius
 }

@@ -1,9 +1,10 @@
 //! Fine-grained path following: (d, φ) through the fine tables to speed and deflection.
 
+use crate::integer::saturate;
 use crate::params::{Follower, Law, Limits};
 use crate::signals::{Behaviour, Controller, Guidance, RuleTrace, Twist};
 use crate::tables::fine::{SPEED_AXIS, Speed, SpeedAxis};
-use crate::units::{Angle, MetresPerSecond, RadiansPerSecond, Seconds, saturate};
+use crate::units::{Angle, MetresPerSecond, RadiansPerSecond, Seconds};
 use fixed::types::I16F16;
 use heapless::Vec;
 
@@ -62,10 +63,11 @@ pub fn follow(
 
 fn speed_of(axis: SpeedAxis, speed: Speed, limits: &Limits) -> MetresPerSecond {
     match axis {
-        // limit · speed / 3.0
+        // limit · speed / 3.0; 3.0 is 3 · 2^13, and the 2^13 go first.
         SpeedAxis::Scaled => {
+            const { assert!(SPEED_AXIS.to_bits() == 3 << 13) };
             let wide = i64::from(limits.speed.bits()).wrapping_mul(speed.to_bits().into());
-            MetresPerSecond::from_bits(saturate(wide / i64::from(SPEED_AXIS.to_bits())))
+            MetresPerSecond::from_bits(saturate(wide >> 13) / 3)
         }
         SpeedAxis::Literal => MetresPerSecond::new(I16F16::from_num(speed)).min(limits.speed),
     }

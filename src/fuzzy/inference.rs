@@ -80,15 +80,18 @@ impl<const R: usize, const C: usize> Activation<R, C> {
 
     /// The rules with a degree above zero, in the table's reading order: one, two or four.
     pub fn fired(&self) -> Vec<FiredRule, 4> {
-        [(0, 0), (0, 1), (1, 0), (1, 1)]
-            .into_iter()
-            .zip(self.degrees)
-            .filter(|(_, degree)| *degree > Grade::ZERO)
-            .map(|((down, right), degree)| FiredRule {
-                row: self.row.saturating_add(down),
-                col: self.col.saturating_add(right),
-                degree,
-            })
-            .collect()
+        let mut fired = Vec::new();
+        let cells = [(0, 0), (0, 1), (1, 0), (1, 1)];
+        for ((down, right), degree) in cells.into_iter().zip(self.degrees) {
+            if degree > Grade::ZERO {
+                // There is room for four.
+                let _ = fired.push(FiredRule {
+                    row: self.row.saturating_add(down),
+                    col: self.col.saturating_add(right),
+                    degree,
+                });
+            }
+        }
+        fired
     }
 }

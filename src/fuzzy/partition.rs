@@ -30,7 +30,7 @@ impl Grade {
 
     /// `1 − self`.
     pub const fn complement(self) -> Self {
-        Self(Self::ONE.0 - self.0)
+        Self(Self::ONE.0.saturating_sub(self.0))
     }
 }
 
@@ -110,7 +110,7 @@ impl<const N: usize> Partition<N> {
         let x = x.to_bits();
         let mut lower = 0;
         for &peak in self.peaks.iter().take(N - 1).skip(1) {
-            lower += usize::from(x >= peak);
+            lower = usize::wrapping_add(lower, usize::from(x >= peak));
         }
         // N ≥ 2 by construction, so this only tells the optimiser that no bound can be missed.
         let lower = lower.min(N - 2);
@@ -120,10 +120,11 @@ impl<const N: usize> Partition<N> {
         } else {
             0
         };
-        let product = u64::from(dx << interval.shift) * u64::from(interval.reciprocal);
+        let product =
+            u64::from(dx.wrapping_shl(interval.shift)).wrapping_mul(u64::from(interval.reciprocal));
         Membership {
             lower: lower as u8,
-            upper_grade: Grade(((product + (1 << 45)) >> 46) as u16),
+            upper_grade: Grade((product.wrapping_add(1 << 45) >> 46) as u16),
         }
     }
 

@@ -10,6 +10,9 @@ use fixed::types::I16F16;
 /// leave the cursor behind; space them wider.
 pub const LOOK: usize = 32;
 
+/// A jump of the tangent by more than this is a corner.
+const CORNER: Angle = Angle::deg("15");
+
 /// Progress along a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cursor {
@@ -61,12 +64,13 @@ impl Cursor {
                 self.laps = self.laps.saturating_add(1);
             }
         }
-        let (foot, _) = path.piece(self.piece).at(self.along);
+        let (foot, forward) = path.piece(self.piece).frame(self.along);
+        let offset = place - foot.at;
         let progress = self.base + self.along;
         Fix {
             foot,
-            cross_track: foot.to_body(place).y,
-            distance: (place - foot.at).norm(),
+            cross_track: forward.back(offset).y,
+            distance: offset.norm(),
             progress,
             remaining: if path.is_closed() {
                 Metres::MAX
@@ -109,24 +113,19 @@ impl Cursor {
                 .saturating_mul(u64::from(distance.max(Metres::ZERO).bits().unsigned_abs()));
             from.saturating_add(gain.saturating_mul(2))
         };
-        let bend = |curvature: PerMetre| {
-            // (a·2^16 · 2^32) / (κ·2^16) = v²·2^32.
-            (u64::from(lateral.to_bits().unsigned_abs()) << 32)
-                .checked_div(u64::from(curvature.bits().unsigned_abs()))
-                .unwrap_or(u64::MAX)
-        };
         let mut limit = u64::MAX;
         let mut ahead = Metres::ZERO - self.along;
         let mut index = self.piece;
         for _ in 0..LOOK {
             let piece = path.piece(index);
-            limit = limit.min(brake(bend(piece.curvature()), ahead));
-            ahead = ahead + piece.length();
+            let length = piece.length();
+            limit = limit.min(brake(piece.bend_speed_squared(length, lateral), ahead));
+            ahead = ahead + length;
             let Some(next) = Self::next(path, index) else {
                 return limit.min(brake(0, ahead));
             };
             let jump = path.piece(next).start_heading() - piece.end_heading();
-            if jump.abs().bits() > Angle::deg("15").bits() {
+            if jump.abs().bits() > CORNER.bits() {
                 limit = limit.min(brake(square(corner), ahead));
             }
             if brake(0, ahead) > square(Metres::from_bits(top.bits())) {

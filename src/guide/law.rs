@@ -10,9 +10,10 @@
 use super::cursor::Cursor;
 use super::path::Path;
 use crate::geometry::{Point, Pose, root};
+use crate::integer::saturate;
 use crate::params::{Follower, Law, Limits};
 use crate::signals::{Guidance, Twist};
-use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, Seconds, saturate};
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, Seconds};
 
 /// What the cursor may advance in a tick although the robot stands: a pivot at a corner moves it this little.
 const SLACK: Metres = Metres::lit("0.01");

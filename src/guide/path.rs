@@ -1,8 +1,10 @@
 //! Paths: a borrowed slice of discrete points or of lines and arcs, open or closed. The slice may be a `static`, or a
 //! `heapless::Vec` that was filled at run time.
 
-use crate::geometry::{Point, Pose, square};
-use crate::units::{Angle, Metres, PerMetre, saturate};
+use crate::geometry::{Point, Pose, Rotation, square};
+use crate::integer::{divide, quotient, saturate};
+use crate::units::{Angle, Metres, PerMetre};
+use fixed::types::I16F16;
 
 /// The most pieces (segments, or gaps between points) of one path.
 pub const MAX_PIECES: usize = 4096;
@@ -42,12 +44,7 @@ impl Segment {
 
     /// An arc about `centre`, beginning in direction `from` of it and sweeping `degrees`, counter-clockwise positive,
     /// at most 360 either way (more counts as 360).
-    pub const fn arc(
-        centre: Point,
-        radius: Metres,
-        from: Angle,
-        degrees: fixed::types::I16F16,
-    ) -> Self {
+    pub const fn arc(centre: Point, radius: Metres, from: Angle, degrees: I16F16) -> Self {
         let turns = ((degrees.to_bits() as i64) << 8) / 360;
         let turns = if turns > 1 << 24 {
             1 << 24
@@ -76,10 +73,17 @@ impl Segment {
 
     /// Place and tangent at `along` metres from the start, limited to the segment.
     pub fn at(&self, along: Metres) -> Pose {
+        self.frame(along).0
+    }
+
+    /// Like [`Segment::at`], with the rotation into the tangent's direction.
+    fn frame(&self, along: Metres) -> (Pose, Rotation) {
         let along = along.max(Metres::ZERO).min(self.length());
         match *self {
             Self::Line { start, .. } => {
-                Pose::new(start.at + Point::polar(along, start.heading), start.heading)
+                let forward = start.heading.rotation();
+                let at = start.at + forward.ahead(along);
+                (Pose::new(at, start.heading), forward)
             }
             Self::Arc {
                 centre,
@@ -93,7 +97,14 @@ impl Segment {
                 } else {
                     from - swept
                 };
-                Pose::new(centre + Point::polar(radius, out), tangent(out, sweep))
+                let outward = out.rotation();
+                let forward = if sweep >= 0 {
+                    outward.left()
+                } else {
+                    outward.right()
+                };
+                let at = centre + outward.ahead(radius);
+                (Pose::new(at, tangent(out, sweep)), forward)
             }
         }
     }
@@ -125,9 +136,7 @@ impl Segment {
         match *self {
             Self::Line { .. } => PerMetre::ZERO,
             Self::Arc { radius, sweep, .. } => {
-                let magnitude = (1i64 << 32)
-                    .checked_div(i64::from(radius.bits()))
-                    .map_or(0, saturate);
+                let magnitude = quotient(1 << 32, radius.bits()).map_or(0, saturate);
                 PerMetre::from_bits(if sweep >= 0 {
                     magnitude
                 } else {
@@ -158,11 +167,8 @@ fn along_arc(radius: Metres, turns: i64) -> Metres {
 fn angle_along(radius: Metres, along: Metres) -> Angle {
     // along / (2π · radius) turns; 2^32/2π · along / radius.
     const TURN: i64 = 683_565_276;
-    let wide = i64::from(along.bits())
-        .wrapping_mul(TURN)
-        .checked_div(i64::from(radius.bits()))
-        .unwrap_or(0);
-    Angle::from_bits(wide as i32)
+    let wide = i64::from(along.bits()).wrapping_mul(TURN);
+    Angle::from_bits(quotient(wide, radius.bits()).unwrap_or(0) as i32)
 }
 
 /// What the path is made of.
@@ -241,10 +247,10 @@ impl<'a> Path<'a> {
     /// the last to the start of the first.
     pub fn segments(segments: &'a [Segment], closed: bool) -> Result<Self, PathError> {
         let path = Self::segments_with_gaps(segments, closed)?;
-        let tolerance = Metres::lit("0.05");
+        const TOLERANCE: Metres = Metres::lit("0.05");
         let mut last = segments.last().filter(|_| closed).map(Segment::end);
         for (i, segment) in segments.iter().enumerate() {
-            if last.is_some_and(|end| (segment.start().at - end.at).norm() > tolerance) {
+            if last.is_some_and(|end| (segment.start().at - end.at).norm() > TOLERANCE) {
                 return Err(PathError::Gap(i));
             }
             last = Some(segment.end());
@@ -360,20 +366,18 @@ impl Piece {
         }
     }
 
-    /// Place, tangent and curvature at `along`, limited to the piece.
-    pub(crate) fn at(&self, along: Metres) -> (Pose, PerMetre) {
+    /// Place and tangent at `along`, limited to the piece, with the rotation into the tangent's direction.
+    pub(crate) fn frame(&self, along: Metres) -> (Pose, Rotation) {
         match *self {
-            Self::Segment(segment) => (segment.at(along), segment.curvature()),
+            Self::Segment(segment) => segment.frame(along),
             Self::Chord { from, to } => {
                 let chord = to.at - from.at;
                 let length = chord.norm();
                 let along = along.max(Metres::ZERO).min(length);
                 let turn = to.heading - from.heading;
                 // Share of the chord, 30 fractional bits.
-                let share = (i64::from(along.bits()) << 30)
-                    .checked_div(i64::from(length.bits()))
-                    .unwrap_or(0);
-                let part = |whole: i32| saturate((i64::from(whole) * share) >> 30);
+                let share = quotient(i64::from(along.bits()) << 30, length.bits()).unwrap_or(0);
+                let part = |whole: i32| saturate(i64::from(whole).wrapping_mul(share) >> 30);
                 let place = from.at
                     + Point::new(
                         Metres::from_bits(part(chord.x.bits())),
@@ -388,7 +392,7 @@ impl Piece {
                 let sideways = chord.direction() - Angle::QUARTER;
                 let place = place + Point::polar(Metres::from_bits(saturate(bulge)), sideways);
                 let heading = from.heading + Angle::from_bits(part(turn.bits()));
-                (Pose::new(place, heading), PerMetre::from_bits(curvature))
+                (Pose::new(place, heading), heading.rotation())
             }
         }
     }
@@ -413,6 +417,22 @@ impl Piece {
         }
     }
 
+    /// Square of the speed at which the bend asks for `lateral` m/s², m²/s² with 32 fractional bits; the largest number
+    /// on a line.
+    pub(crate) fn bend_speed_squared(&self, length: Metres, lateral: I16F16) -> u64 {
+        let lateral = u64::from(lateral.to_bits().unsigned_abs());
+        let by = |length: Metres| lateral.wrapping_mul(length.bits().unsigned_abs().into());
+        match *self {
+            Self::Segment(Segment::Line { .. }) => u64::MAX,
+            Self::Segment(Segment::Arc { radius, .. }) => by(radius),
+            Self::Chord { from, to } => {
+                let turn = (to.heading - from.heading).radians().to_bits();
+                let scaled = by(length).min(u64::MAX >> 16) << 16;
+                divide(scaled, turn.unsigned_abs()).unwrap_or(u64::MAX)
+            }
+        }
+    }
+
     /// Curvature, constant along a piece.
     pub(crate) fn curvature(&self) -> PerMetre {
         match *self {
@@ -420,11 +440,8 @@ impl Piece {
             Self::Chord { from, to } => {
                 let length = (to.at - from.at).norm();
                 let turn = to.heading - from.heading;
-                PerMetre::from_bits(
-                    (i64::from(turn.radians().to_bits()) << 16)
-                        .checked_div(i64::from(length.bits()))
-                        .map_or(0, saturate),
-                )
+                let radians = i64::from(turn.radians().to_bits()) << 16;
+                PerMetre::from_bits(quotient(radians, length.bits()).map_or(0, saturate))
             }
         }
     }
@@ -439,9 +456,7 @@ impl Piece {
                 let product =
                     |a: Metres, b: Metres| i64::from(a.bits()).wrapping_mul(b.bits().into());
                 let dot = product(chord.x, offset.x).saturating_add(product(chord.y, offset.y));
-                Metres::from_bits(saturate(
-                    dot.checked_div(i64::from(chord.norm().bits())).unwrap_or(0),
-                ))
+                Metres::from_bits(quotient(dot, chord.norm().bits()).map_or(0, saturate))
             }
             Self::Segment(Segment::Line { start, .. }) => start.to_body(place).x,
             Self::Segment(Segment::Arc {

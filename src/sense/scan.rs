@@ -2,10 +2,11 @@
 
 use super::circle::fit_circle;
 use crate::geometry::{Point, root, square};
+use crate::integer::saturate;
 use crate::params::{MAX_BEAMS, RingGeometry};
 use crate::ports::{Fault, Range, RangeReading};
 use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
-use crate::units::{Angle, Metres, MetresPerSecond, Seconds, saturate};
+use crate::units::{Angle, Metres, MetresPerSecond, Seconds};
 use heapless::Vec;
 
 /// Judges every reading, places the echoes in the body frame and makes circles of them; what `sensed` held is gone.
@@ -28,8 +29,10 @@ pub fn sense_ranges<const N: usize>(
     // Bit i: echo i goes on where the one before it ended.
     let mut joined = 0u64;
     let (mut nearest, mut before) = (u64::MAX, None);
-    let mut ends = (false, false);
-    for (i, (mount, reading)) in ring.mounts.iter().zip(readings).take(MAX_BEAMS).enumerate() {
+    // Whether the first and the last sensor see an echo.
+    let (mut start, mut ends) = (true, (false, false));
+    for (mount, reading) in ring.mounts.iter().zip(readings).take(MAX_BEAMS) {
+        let first = core::mem::take(&mut start);
         let range = judge(ring, reading, speed);
         if !matches!(range, Range::Invalid(_)) {
             sensed.valid = sensed.valid.saturating_add(1);
@@ -45,7 +48,7 @@ pub fn sense_ranges<const N: usize>(
             joined |= bit(sensed.echoes.len());
         }
         before = Some(point);
-        ends = (ends.0 || i == 0, true);
+        ends = (ends.0 || first, true);
         // Both have room for every beam that is looked at.
         let _ = sensed.echoes.push(point);
         let _ = sensed.spreads.push(spread(distance, mount.width));

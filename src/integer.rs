@@ -1,0 +1,154 @@
+//! Integer routines of bounded, small cost: no Cortex-M divides 64 bits, so what must be 64 bits wide is put together from
+//! 32-bit divisions. Every routine is total.
+
+/// Narrows to `i32`, saturating.
+pub(crate) const fn saturate(wide: i64) -> i32 {
+    if wide > i32::MAX as i64 {
+        i32::MAX
+    } else if wide < i32::MIN as i64 {
+        i32::MIN
+    } else {
+        wide as i32
+    }
+}
+
+/// Quotient, rounded down; `None` for a divisor of 0.
+///
+/// Schoolbook division in digits of 16 bits (Knuth, *The Art of Computer Programming* 2, 4.3.1 D): at most three 32-bit
+/// divisions.
+pub(crate) const fn divide(value: u64, divisor: u32) -> Option<u64> {
+    let (upper, lower) = ((value >> 32) as u32, value as u32);
+    let (Some(first), Some(rest)) = (upper.checked_div(divisor), upper.checked_rem(divisor)) else {
+        return None;
+    };
+    if rest == 0 {
+        let low = match lower.checked_div(divisor) {
+            Some(low) => low,
+            None => 0,
+        };
+        return Some(((first as u64) << 32) | low as u64);
+    }
+    // The divisor's top bit set, so that a digit's estimate from its upper half is at most two too large.
+    let shift = divisor.leading_zeros();
+    let divisor = divisor.wrapping_shl(shift);
+    let value = (((rest as u64) << 32) | lower as u64).wrapping_shl(shift);
+    let (rest, high) = digit((value >> 32) as u32, (value >> 16) as u32 & 0xffff, divisor);
+    let (_, low) = digit(rest, value as u32 & 0xffff, divisor);
+    Some(((first as u64) << 32) | ((high as u64) << 16) | low as u64)
+}
+
+/// One digit: (rest·2^16 + next) by `divisor`, whose top bit is set; `rest` is below it. New rest and quotient.
+const fn digit(rest: u32, next: u32, divisor: u32) -> (u32, u32) {
+    let mut quotient = match rest.checked_div(divisor >> 16) {
+        Some(quotient) if quotient < 1 << 16 => quotient,
+        _ => 0xffff,
+    };
+    let value = ((rest as u64) << 16) | next as u64;
+    let mut rest = value.wrapping_sub((quotient as u64).wrapping_mul(divisor as u64)) as i64;
+    let mut corrections = 0;
+    while rest < 0 && corrections < 2 {
+        rest = rest.wrapping_add(divisor as i64);
+        quotient = quotient.wrapping_sub(1);
+        corrections = u32::wrapping_add(corrections, 1);
+    }
+    (rest as u32, quotient)
+}
+
+/// `value · numerator / denominator`, rounded towards zero, saturating; 0 for a denominator of 0.
+pub(crate) fn ratio(value: i32, numerator: i32, denominator: i32) -> i32 {
+    let product = i64::from(value).wrapping_mul(numerator.into());
+    quotient(product, denominator).map_or(0, saturate)
+}
+
+/// Quotient, rounded towards zero; `None` for a divisor of 0.
+pub(crate) fn quotient(value: i64, divisor: i32) -> Option<i64> {
+    let magnitude = divide(value.unsigned_abs(), divisor.unsigned_abs())? as i64;
+    Some(if (value < 0) == (divisor < 0) {
+        magnitude
+    } else {
+        magnitude.wrapping_neg()
+    })
+}
+
+/// Square root, rounded down.
+///
+/// Zimmermann's Karatsuba square root with one level (*INRIA RR-3805*, 1999): the root of the upper half, then 16 more
+/// bits by a division of 32 bits, where `u64::isqrt` takes one of 64.
+pub(crate) fn square_root(square: u64) -> u32 {
+    let Some(top) = square.checked_ilog2() else {
+        return 0;
+    };
+    // The upper half becomes at least 2^30, its root at least 2^15.
+    let shift = 31u32.wrapping_sub(top >> 1);
+    let wide = square.wrapping_shl(shift.wrapping_mul(2));
+    let upper = (wide >> 32) as u32;
+    let root = upper.isqrt();
+    let rest = upper.wrapping_sub(root.wrapping_mul(root));
+    // (rest·2^16 + the next 16 bits) / (2·root), both halved. Rounding and the cap leave it one too large at most.
+    let digits = (rest << 15) | ((wide as u32) >> 17);
+    let digits = digits.checked_div(root).unwrap_or(0).min(0xffff);
+    let root = (root << 16) | digits;
+    let over = u64::from(root).wrapping_mul(root.into()) > wide;
+    root.wrapping_sub(over.into()).wrapping_shr(shift)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::integer::{divide, quotient, ratio, square_root};
+
+    /// Numbers at and around every power of two, and pseudo-random ones.
+    fn numbers() -> impl Iterator<Item = u64> + Clone {
+        let edges = (0..64).flat_map(|bit| {
+            let power = 1u64 << bit;
+            [
+                power.wrapping_sub(1),
+                power,
+                power.wrapping_add(1),
+                u64::MAX - power,
+            ]
+        });
+        let mut state = 1u64;
+        let random = (0..2000).map(move |i| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            state.rotate_left(17) >> (i % 64)
+        });
+        edges.chain(random)
+    }
+
+    #[test]
+    fn roots_are_rounded_down() {
+        for n in numbers() {
+            assert_eq!(u64::from(square_root(n)), n.isqrt(), "{n}");
+        }
+        for root in numbers().map(|n| n >> 32) {
+            assert_eq!(u64::from(square_root(root * root)), root);
+            assert_eq!(
+                u64::from(square_root((root * root).saturating_sub(1))),
+                root.saturating_sub(1)
+            );
+        }
+    }
+
+    #[test]
+    fn quotients_are_the_processors() {
+        for n in numbers() {
+            for d in numbers().map(|d| d as u32) {
+                assert_eq!(divide(n, d), n.checked_div(d.into()), "{n} / {d}");
+            }
+        }
+        for n in numbers() {
+            for d in [1, -1, 2, -3, 7, i32::MAX, i32::MIN, 0] {
+                let wanted = i128::from(n as i64).checked_div(d.into());
+                assert_eq!(
+                    quotient(n as i64, d).map(|q| q as u64),
+                    wanted.map(|q| q as u64)
+                );
+            }
+        }
+        assert_eq!(ratio(i32::MIN, i32::MIN, 1), i32::MAX);
+        assert_eq!(ratio(-7, 3, 2), -10);
+        assert_eq!(ratio(5, 5, 0), 0);
+    }
+}
