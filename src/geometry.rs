@@ -1,6 +1,6 @@
 //! Points and poses in the plane, in fixed point. x forward (or east), y left (or north), counter-clockwise positive.
 
-use crate::integer::{saturate, square_root};
+use crate::integer::square_root;
 use crate::units::{Angle, Metres};
 use fixed::types::I2F30;
 
@@ -84,6 +84,20 @@ impl Rotation {
         )
     }
 
+    /// Fractional bits that [`along_and_beside`](Self::along_and_beside) has more than [`Metres`].
+    pub const FRACTION: u32 = 30;
+
+    /// How far `point` lies along this direction, and to the left of it; unrounded. For comparisons.
+    pub fn along_and_beside(self, point: Point) -> (i64, i64) {
+        let [x, y] = [point.x, point.y].map(|m| i64::from(m.bits()));
+        let [cos, sin] = [self.cos, self.sin].map(|r| i64::from(r.to_bits()));
+        // Four products of 31 + 30 bits at most: two together fit.
+        (
+            x.wrapping_mul(cos).wrapping_add(y.wrapping_mul(sin)),
+            y.wrapping_mul(cos).wrapping_sub(x.wrapping_mul(sin)),
+        )
+    }
+
     /// The point at `distance` in this direction.
     pub fn ahead(self, distance: Metres) -> Point {
         Point::new(times(distance, self.cos), times(distance, self.sin))
@@ -147,10 +161,10 @@ impl Pose {
     }
 }
 
-/// Length times a cosine or sine, rounded to nearest.
+/// Length times a cosine or sine, at most one either way: the product, rounded to nearest, is a length again.
 pub(crate) fn times(length: Metres, ratio: I2F30) -> Metres {
     let wide = i64::from(length.bits()).wrapping_mul(ratio.to_bits().into());
-    Metres::from_bits(saturate(wide.wrapping_add(1 << 29) >> 30))
+    Metres::from_bits((wide.wrapping_add(1 << 29) >> 30) as i32)
 }
 
 /// Square of a length, in squares of a step.

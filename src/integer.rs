@@ -73,7 +73,7 @@ pub(crate) fn quotient(value: i64, divisor: i32) -> Option<i64> {
 /// Square root, rounded down.
 ///
 /// Zimmermann's Karatsuba square root with one level (*INRIA RR-3805*, 1999): the root of the upper half, then 16 more
-/// bits by a division of 32 bits, where `u64::isqrt` takes one of 64.
+/// bits by a division. Two 32-bit divisions in all, where `u64::isqrt` takes one of 64 bits.
 pub(crate) fn square_root(square: u64) -> u32 {
     let Some(top) = square.checked_ilog2() else {
         return 0;
@@ -82,7 +82,7 @@ pub(crate) fn square_root(square: u64) -> u32 {
     let shift = 31u32.wrapping_sub(top >> 1);
     let wide = square.wrapping_shl(shift.wrapping_mul(2));
     let upper = (wide >> 32) as u32;
-    let root = upper.isqrt();
+    let root = root_of_upper(upper);
     let rest = upper.wrapping_sub(root.wrapping_mul(root));
     // (rest·2^16 + the next 16 bits) / (2·root), both halved. Rounding and the cap leave it one too large at most.
     let digits = (rest << 15) | ((wide as u32) >> 17);
@@ -90,6 +90,124 @@ pub(crate) fn square_root(square: u64) -> u32 {
     let root = (root << 16) | digits;
     let over = u64::from(root).wrapping_mul(root.into()) > wide;
     root.wrapping_sub(over.into()).wrapping_shr(shift)
+}
+
+/// Square root, rounded down, of a number from 2^30 on: a table's guess, and a step of Newton's with the guess's own
+/// reciprocal from the table. No division: a Cortex-M0 has none.
+fn root_of_upper(upper: u32) -> u32 {
+    let index = ((upper >> 24) as usize).wrapping_sub(FIRST_ROOT);
+    let (root, reciprocal) = ROOTS.get(index).copied().unwrap_or((u16::MAX, 0));
+    let guess = u32::from(root);
+    let excess = upper.wrapping_sub(guess.wrapping_mul(guess)) as i32;
+    // The guess is within 2^-8: |excess| < 2^24, what it corrects is < 2^8, and what the step leaves is < 1.
+    let step = (excess >> 5).wrapping_mul(reciprocal.into()) >> 23;
+    let root = guess.wrapping_add_signed(step).min(0xffff);
+    let root = root.wrapping_sub((root.wrapping_mul(root) > upper).into());
+    let next = root.wrapping_add(1);
+    let short = next <= 0xffff && next.wrapping_mul(next) <= upper;
+    root.wrapping_add(short.into())
+}
+
+/// Upper eight bits of the smallest number in [`ROOTS`].
+const FIRST_ROOT: usize = 64;
+
+/// For the upper eight bits i of 32, from 64: 2^12·√(i + ½), and 2^27 by that.
+static ROOTS: [(u16, u16); 192] = {
+    let mut table = [(0, 0); 192];
+    let mut i = 0;
+    while i < 192 {
+        let root = (((i + FIRST_ROOT) as u64 * 2 + 1) << 23).isqrt() as u32;
+        table[i] = (root as u16, ((1 << 27) / root) as u16);
+        i += 1;
+    }
+    table
+};
+
+/// Direction of the vector (x, y) as a binary angle, a full turn 2^32; 0 for the null vector. Within 1.3e-6 rad.
+///
+/// The smaller coordinate by the larger, in two digits of 32-bit divisions; the arctangent of that from a table of 257,
+/// linear in between.
+pub(crate) const fn arctangent(x: i32, y: i32) -> i32 {
+    let (ax, ay) = (x.unsigned_abs(), y.unsigned_abs());
+    let (steep, most, least) = if ay > ax {
+        (true, ay, ax)
+    } else {
+        (false, ax, ay)
+    };
+    let ratio = proper_fraction(least, most);
+    let (place, rest) = ((ratio >> 16) as usize, ratio & 0xffff);
+    // The ratio is at most one, 2^24: place 256, rest 0.
+    let [from, to] = match place {
+        0..256 => [ARCTANGENTS[place], ARCTANGENTS[place + 1]],
+        _ => [ARCTANGENTS[256]; 2],
+    };
+    // Neighbours differ by less than 2^22.
+    let between = ((to.wrapping_sub(from) as u64).wrapping_mul(rest as u64) >> 16) as u32;
+    let octant = from.wrapping_add(between);
+    let quadrant = if steep {
+        (1u32 << 30).wrapping_sub(octant)
+    } else {
+        octant
+    };
+    let half = if x < 0 {
+        (1u32 << 31).wrapping_sub(quadrant)
+    } else {
+        quadrant
+    };
+    let whole = half as i32;
+    if y < 0 { whole.wrapping_neg() } else { whole }
+}
+
+/// `least / most` with 24 fractional bits, for `least` ≤ `most`; 0 if both are.
+const fn proper_fraction(least: u32, most: u32) -> u32 {
+    let shift = most.leading_zeros();
+    let (least, most) = (least.wrapping_shl(shift), most.wrapping_shl(shift));
+    // By the divisor's upper half, plus one so that nothing comes out too large: the first digit is short by 2 at most.
+    let upper = (most >> 16).wrapping_add(1);
+    let first = match least.checked_div(upper) {
+        Some(digit) => digit,
+        None => 0,
+    };
+    let rest = ((least as u64) << 16).wrapping_sub((first as u64).wrapping_mul(most as u64));
+    let second = match ((rest >> 8) as u32).checked_div(upper) {
+        Some(digit) => digit,
+        None => 0,
+    };
+    let ratio = (first << 8).wrapping_add(second);
+    if ratio > 1 << 24 { 1 << 24 } else { ratio }
+}
+
+/// atan(i / 256) as binary angles, 2^32 a turn.
+static ARCTANGENTS: [u32; 257] = arctangents();
+
+const fn arctangents() -> [u32; 257] {
+    let mut table = [0; 257];
+    let mut i = 1;
+    while i <= 256 {
+        table[i] = arctangent_of_share(i as i64);
+        i += 1;
+    }
+    table
+}
+
+/// atan(i / 256) by Euler's series, Σ 2^2k (k!)² / (2k+1)! · x^(2k+1) / (1 + x²)^(k+1), in 60 fractional bits.
+const fn arctangent_of_share(i: i64) -> u32 {
+    const ONE: i128 = 1 << 60;
+    let x = (i as i128) << 52;
+    let squared = (x * x) >> 60;
+    let step = (squared << 60) / (ONE + squared);
+    let mut term = (x << 60) / (ONE + squared);
+    let mut sum = 0;
+    let mut k = 0;
+    while k < 80 {
+        sum += term;
+        k += 1;
+        // The next term: times 2k / (2k + 1) · x² / (1 + x²).
+        term = ((term * step) >> 60) * (2 * k) / (2 * k + 1);
+    }
+    // Radians to turns: 2^32 / 2π = 683 565 275.576…, here with 30 fractional bits.
+    const TURN: i128 = 733_972_625_820_500_307;
+    ((sum * TURN + (1 << 89)) >> 90) as u32
 }
 
 #[cfg(test)]
@@ -121,6 +239,14 @@ mod tests {
     fn roots_are_rounded_down() {
         for n in numbers() {
             assert_eq!(u64::from(square_root(n)), n.isqrt(), "{n}");
+        }
+        // Every root of 16 bits, at both ends of what has it.
+        for root in 1u64 << 15..1 << 16 {
+            let next = (root + 1) * (root + 1);
+            for n in [root * root, next - 1] {
+                assert_eq!(u64::from(square_root(n)), root);
+                assert_eq!(u64::from(square_root(n << 32) >> 16), root);
+            }
         }
         for root in numbers().map(|n| n >> 32) {
             assert_eq!(u64::from(square_root(root * root)), root);

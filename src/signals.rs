@@ -54,11 +54,31 @@ impl Obstacle {
         }
     }
 
+    /// The edge of the unfeasible region on the side of a `turn`: the bearing and half the angle together, by one
+    /// arctangent.
+    pub fn unfeasible_edge(&self, grown: Metres, turn: Turn) -> Angle {
+        let reach = self.radius + grown;
+        let beyond = self.centre.norm_squared().checked_sub(square(reach));
+        let leg = beyond.map_or(Metres::ZERO, root);
+        let [x, y] = [self.centre.x, self.centre.y].map(|m| i64::from(m.bits()));
+        let leg = i64::from(leg.bits());
+        let aside = match turn {
+            Turn::Left => i64::from(reach.bits()),
+            Turn::Right => i64::from(reach.bits()).wrapping_neg(),
+        };
+        // The centre's vector turned by asin(reach / distance), as long as distance²: below 2^63.
+        Angle::of_wide(
+            x.wrapping_mul(leg).wrapping_sub(y.wrapping_mul(aside)),
+            y.wrapping_mul(leg).wrapping_add(x.wrapping_mul(aside)),
+        )
+    }
+
     /// Whether the direction `way` lies in the unfeasible region, edges not included: the obstacle, its radius grown by
     /// `grown`, stands on that ray.
     pub fn covers(&self, way: Rotation, grown: Metres) -> bool {
-        let seen = way.back(self.centre);
-        seen.x > Metres::ZERO && seen.y.abs() < self.radius + grown
+        let (along, beside) = way.along_and_beside(self.centre);
+        let reach = i64::from((self.radius + grown).bits());
+        along > 0 && beside.saturating_abs() < reach << Rotation::FRACTION
     }
 }
 
@@ -70,7 +90,7 @@ pub struct Sensed {
     /// How far beside its point each echo may really stand: a cone says "somewhere on this arc". In the order of
     /// `echoes`; 0 for beams.
     pub spreads: Vec<Metres, MAX_BEAMS>,
-    /// Obstacles, nearest surface first.
+    /// Obstacles, in the order of their nearest echoes, nearest first.
     pub obstacles: Vec<Obstacle, MAX_OBSTACLES>,
     /// Sensors with a valid reading.
     pub valid: u8,

@@ -271,9 +271,9 @@ impl SupervisorState {
         let Some(obstacle) = threat(params, avoider, now) else {
             return;
         };
-        let centre = now.pose.to_world(obstacle.centre);
-        if (centre - held.centre).norm_squared() > square(params.same) {
-            held.centre = centre;
+        // Both in the body frame of this tick.
+        if (obstacle.centre - held.obstacle.centre).norm_squared() > square(params.same) {
+            held.centre = now.pose.to_world(obstacle.centre);
             held.obstacle = obstacle;
             held.unseen = 0;
         }
@@ -284,6 +284,9 @@ impl SupervisorState {
 /// margin does not come into the way again by a noisy estimate.
 fn threat(params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) -> Option<Obstacle> {
     let grown = now.robot_radius + Metres::from_bits(avoider.margin.bits() >> 1);
+    if now.sensed.obstacles.is_empty() {
+        return None;
+    }
     let way = now.guidance.heading_error.rotation();
     let near = Metres::from_bits(params.enter.bits() >> 1);
     now.sensed.obstacles.iter().copied().find(|obstacle| {

@@ -12,7 +12,7 @@
 //! Linear quantities **saturate** at the ends of their range; angles **wrap**, on purpose and for free. No
 //! operation here can panic.
 
-use crate::integer::saturate;
+use crate::integer::{arctangent, saturate};
 use core::ops::{Add, Neg, Sub};
 use fixed::types::{I2F30, I8F24, I16F16};
 
@@ -256,12 +256,19 @@ impl Angle {
         (I2F30::from_bits(cos >> 1), I2F30::from_bits(sin >> 1))
     }
 
-    /// Direction of the vector (x, y): its scale does not matter, (0, 0) gives 0.
+    /// Direction of the vector (x, y): its scale does not matter, (0, 0) gives 0. Within 1.3e-6 rad.
     pub fn of(x: i32, y: i32) -> Self {
-        if x == 0 && y == 0 {
-            return Self::ZERO;
-        }
-        Self(idsp::atan2(y, x))
+        Self(arctangent(x, y))
+    }
+
+    /// Like [`Angle::of`] for coordinates of any length.
+    pub(crate) const fn of_wide(x: i64, y: i64) -> Self {
+        let longest = x.unsigned_abs() | y.unsigned_abs();
+        let excess = 33u32.saturating_sub(longest.leading_zeros());
+        Self(arctangent(
+            x.wrapping_shr(excess) as i32,
+            y.wrapping_shr(excess) as i32,
+        ))
     }
 }
 

@@ -1058,8 +1058,8 @@ fn the_same_tape_gives_the_same_records() {
 /// Of the tape above. A new value means that some bit of some tick is different: intended, or another architecture's
 /// arithmetic. The tape uses integers only, so every machine must agree.
 const DIGESTS: [(Law, u64); 2] = [
-    (Law::Guided, 0x0557_62b5_87d3_4d09),
-    (Law::Paper, 0x5765_4b87_caa3_2464),
+    (Law::Guided, 0x6c58_09ed_32f6_6e8c),
+    (Law::Paper, 0x8d27_fa49_1ccb_474d),
 ];
 
 #[test]

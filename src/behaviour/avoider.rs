@@ -40,11 +40,9 @@ pub fn avoid(
     };
     let grown = robot_radius + avoider.margin;
     let theta = mirror(held.bearing());
-    let share = ratio(
-        held.free_distance(robot_radius).bits(),
-        1 << 16,
-        avoider.range.bits(),
-    );
+    let distance = held.centre.norm();
+    let free = (distance - held.radius - robot_radius).max(Metres::ZERO);
+    let share = ratio(free.bits(), 1 << 16, avoider.range.bits());
     let (s, theta_degrees) = (I16F16::from_bits(share), theta.degrees());
     let out = avoider
         .tables
@@ -66,18 +64,20 @@ pub fn avoid(
     };
     // A right turn by wanted − θ, as a direction in the mirrored body frame (left positive there, too).
     let mut direction = theta - wanted;
-    let behind = held.centre.norm() + held.radius;
+    let behind = distance + held.radius;
+    let matters = |other: &Obstacle| {
+        let distance = other.centre.norm_squared();
+        // What stands behind the held one does not matter yet.
+        let sooner = distance < square(behind + other.radius);
+        sooner && other.is_nearer(robot_radius, avoider.range)
+    };
     let mut way = mirror(direction).rotation();
     // Every push goes to the right, so as many passes as obstacles reach the end.
     for _ in 0..sensed.obstacles.len() {
         let mut pushed = false;
         for other in &sensed.obstacles {
-            let near = other.is_nearer(robot_radius, avoider.range);
-            // What stands behind the held one does not matter yet.
-            let sooner = other.centre.norm_squared() < square(behind + other.radius);
-            if near && sooner && other.covers(way, grown) {
-                let bearing = mirror(other.bearing());
-                direction = bearing - other.unfeasible_half_angle(grown) - EDGE;
+            if other.covers(way, grown) && matters(other) {
+                direction = mirror(other.unfeasible_edge(grown, side)) - EDGE;
                 way = mirror(direction).rotation();
                 pushed = true;
             }

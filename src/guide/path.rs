@@ -73,12 +73,11 @@ impl Segment {
 
     /// Place and tangent at `along` metres from the start, limited to the segment.
     pub fn at(&self, along: Metres) -> Pose {
-        self.frame(along).0
+        self.frame(along.max(Metres::ZERO).min(self.length())).0
     }
 
-    /// Like [`Segment::at`], with the rotation into the tangent's direction.
+    /// Like [`Segment::at`] for a place on the segment, with the rotation into the tangent's direction.
     fn frame(&self, along: Metres) -> (Pose, Rotation) {
-        let along = along.max(Metres::ZERO).min(self.length());
         match *self {
             Self::Line { start, .. } => {
                 let forward = start.heading.rotation();
@@ -366,7 +365,7 @@ impl Piece {
         }
     }
 
-    /// Place and tangent at `along`, limited to the piece, with the rotation into the tangent's direction.
+    /// Place and tangent at `along`, which is on the piece, with the rotation into the tangent's direction.
     pub(crate) fn frame(&self, along: Metres) -> (Pose, Rotation) {
         match *self {
             Self::Segment(segment) => segment.frame(along),

@@ -1,12 +1,13 @@
 //! One turn of the range ring: validity, segments, circles.
 
 use super::circle::fit_circle;
-use crate::geometry::{Point, root, square};
-use crate::integer::saturate;
+use crate::geometry::{Point, Rotation, square, times};
+use crate::integer::{divide, saturate};
 use crate::params::{MAX_BEAMS, RingGeometry};
 use crate::ports::{Fault, Range, RangeReading};
 use crate::signals::{MAX_OBSTACLES, Obstacle, Sensed};
 use crate::units::{Angle, Metres, MetresPerSecond, Seconds};
+use fixed::types::I2F30;
 use heapless::Vec;
 
 /// Judges every reading, places the echoes in the body frame and makes circles of them; what `sensed` held is gone.
@@ -24,118 +25,218 @@ pub fn sense_ranges<const N: usize>(
     sensed.spreads.clear();
     sensed.obstacles.clear();
     sensed.valid = 0;
+    sensed.nearest = Metres::MAX;
+    let mut finds = Finds {
+        ring,
+        space: None,
+        nearest: Vec::new(),
+    };
     let gap = square(ring.gap);
     let near = |a: Point, b: Point| (a - b).norm_squared() <= gap;
-    // Bit i: echo i goes on where the one before it ended.
-    let mut joined = 0u64;
-    let (mut nearest, mut before) = (u64::MAX, None);
-    // Whether the first and the last sensor see an echo.
-    let (mut start, mut ends) = (true, (false, false));
-    for (mount, reading) in ring.mounts.iter().zip(readings).take(MAX_BEAMS) {
-        let first = core::mem::take(&mut start);
+    // All cones are alike as a rule.
+    let mut cone = (Angle::ZERO, I2F30::ZERO);
+    // The run at hand, and the one that began at the first sensor: in a closed ring the last may go on in it.
+    let (mut open, mut first, mut begin) = (None::<Run>, None::<Run>, true);
+    let mounts = ring.mounts.get(..MAX_BEAMS).unwrap_or(&ring.mounts);
+    for (mount, reading) in mounts.iter().zip(readings) {
+        let at_begin = core::mem::take(&mut begin);
         let range = judge(ring, reading, speed);
         if !matches!(range, Range::Invalid(_)) {
             sensed.valid = sensed.valid.saturating_add(1);
         }
-        ends.1 = false;
         let Range::Echo(distance) = range else {
-            before = None;
+            if let Some(run) = open.take() {
+                finds.close(run, &mut first, sensed);
+            }
             continue;
         };
-        let point = mount.pose.at + Point::polar(distance, mount.pose.heading);
-        nearest = nearest.min(point.norm_squared());
-        if before.is_some_and(|last| near(point, last)) {
-            joined |= bit(sensed.echoes.len());
+        let direction = mount.pose.heading.rotation();
+        let point = mount.pose.at + direction.ahead(distance);
+        // What sits at the centre needs no root.
+        let from_centre = if mount.pose.at == Point::default() {
+            distance
+        } else {
+            point.norm()
+        };
+        sensed.nearest = sensed.nearest.min(from_centre);
+        if mount.width != cone.0 {
+            cone = (mount.width, half_sine(mount.width));
         }
-        before = Some(point);
-        ends = (ends.0 || first, true);
+        let spread = times(distance, cone.1);
+        let index = sensed.echoes.len();
         // Both have room for every beam that is looked at.
         let _ = sensed.echoes.push(point);
-        let _ = sensed.spreads.push(spread(distance, mount.width));
+        let _ = sensed.spreads.push(spread);
+        match &mut open {
+            Some(run) if near(point, run.last) => {
+                run.count = run.count.saturating_add(1);
+                run.last = point;
+                run.nearest = run.nearest.min(from_centre);
+                run.spread = run.spread.max(spread);
+            }
+            _ => {
+                let run = Run {
+                    start: index,
+                    count: 1,
+                    at_begin,
+                    first: point,
+                    last: point,
+                    direction,
+                    nearest: from_centre,
+                    spread,
+                };
+                if let Some(finished) = open.replace(run) {
+                    finds.close(finished, &mut first, sensed);
+                }
+            }
+        }
     }
-    sensed.nearest = match nearest {
-        u64::MAX => Metres::MAX,
-        nearest => root(nearest),
-    };
-    let count = sensed.echoes.len();
-    if let (true, (true, true), [first, .., last]) = (ring.closed, ends, sensed.echoes.as_slice())
-        && near(*first, *last)
-    {
-        joined |= 1;
+    match (open, first) {
+        // The last run goes on in the first: one obstacle.
+        (Some(last), Some(first)) if near(last.last, first.first) => {
+            let whole = Run {
+                count: last.count.saturating_add(first.count),
+                last: first.last,
+                nearest: last.nearest.min(first.nearest),
+                spread: last.spread.max(first.spread),
+                ..last
+            };
+            finds.insert(whole, sensed);
+        }
+        (last, first) => {
+            for run in [last, first].into_iter().flatten() {
+                finds.insert(run, sensed);
+            }
+        }
     }
-    // A segment may go round the end of the list: begin where one begins.
-    let start = joined.trailing_ones() as usize;
-    let start = if start >= count { 0 } else { start };
-    let mut keys = Vec::new();
-    let mut from = start;
-    for step in 1..=count {
-        let to = start.saturating_add(step);
-        let index = if to >= count {
-            to.saturating_sub(count)
+}
+
+/// Consecutive echoes of one obstacle.
+#[derive(Clone, Copy)]
+struct Run {
+    /// Place of the first among the echoes; a run may go on past their end, from the beginning.
+    start: usize,
+    count: usize,
+    /// It begins at the first sensor.
+    at_begin: bool,
+    first: Point,
+    last: Point,
+    /// Where the first one's sensor looks.
+    direction: Rotation,
+    /// Least distance from the body's centre.
+    nearest: Metres,
+    /// Largest spread.
+    spread: Metres,
+}
+
+impl Run {
+    /// The echoes, in order.
+    fn points<'a>(&self, echoes: &'a [Point]) -> impl Iterator<Item = Point> + Clone + use<'a> {
+        let end = self.start.saturating_add(self.count);
+        let head = echoes.get(self.start..end.min(echoes.len()));
+        let tail = echoes.get(..end.saturating_sub(echoes.len()));
+        let (head, tail) = (head.unwrap_or_default(), tail.unwrap_or_default());
+        head.iter().chain(tail).copied()
+    }
+}
+
+/// The obstacles found so far, the one with the nearest echo first.
+struct Finds<'a, const N: usize> {
+    ring: &'a RingGeometry<N>,
+    /// Sine of half the angle between two sensors, once it was needed.
+    space: Option<I2F30>,
+    /// Distance of the obstacles' nearest echoes from the body's centre.
+    nearest: Vec<Metres, MAX_OBSTACLES>,
+}
+
+impl<const N: usize> Finds<'_, N> {
+    /// A run ends. The one from a closed ring's first sensor waits for the last.
+    fn close(&mut self, run: Run, first: &mut Option<Run>, sensed: &mut Sensed) {
+        if run.at_begin && self.ring.closed {
+            *first = Some(run);
         } else {
-            to
+            self.insert(run, sensed);
+        }
+    }
+
+    /// Puts the run's circle in its place; when the list is full, the farthest goes.
+    fn insert(&mut self, run: Run, sensed: &mut Sensed) {
+        let (obstacles, nearest) = (&mut sensed.obstacles, &mut self.nearest);
+        if obstacles.is_full() {
+            if nearest.last().is_some_and(|last| *last <= run.nearest) {
+                return;
+            }
+            obstacles.pop();
+            nearest.pop();
+        }
+        let obstacle = circle_of(self.ring, &mut self.space, &run, &sensed.echoes);
+        // There is room now. What lies farther moves up.
+        let _ = (obstacles.push(obstacle), nearest.push(run.nearest));
+        let mut at = nearest.len().saturating_sub(1);
+        while let Some(before) = at.checked_sub(1)
+            && let Some([left, right]) = nearest.get_mut(before..=at)
+            && let Some([moved, place]) = obstacles.get_mut(before..=at)
+            && *left > run.nearest
+        {
+            (*right, *place) = (*left, *moved);
+            (*left, *moved) = (run.nearest, obstacle);
+            at = before;
+        }
+    }
+}
+
+/// The circle behind a run of echoes.
+///
+/// A fit is believed with at least [`ENOUGH`] echoes, a radius and residual within the ring's bounds, and a sagitta
+/// of the arc seen that is not lost in that residual (a flatter arc says nothing about its radius). Otherwise the
+/// disc that can have made the echoes stands in: as wide as they are, and to either side half a beam's spacing or
+/// half a cone's width, whichever is more; its surface through the nearest. A single echo's disc stands behind it
+/// on its beam.
+///
+/// `space` keeps the sine of half the angle between two sensors, once it was needed.
+fn circle_of<const N: usize>(
+    ring: &RingGeometry<N>,
+    space: &mut Option<I2F30>,
+    run: &Run,
+    echoes: &[Point],
+) -> Obstacle {
+    let [least, most] = ring.radius;
+    let disc = |centre, radius| Obstacle {
+        centre,
+        radius,
+        residual: ring.residual,
+        echoes: u8::try_from(run.count).unwrap_or(u8::MAX),
+    };
+    if run.count <= 1 {
+        // One echo shows no space to its neighbours: there it is the ring's.
+        let space = *space.get_or_insert_with(|| half_sine(pitch(ring)));
+        let half_width = times(run.nearest, space).max(run.spread);
+        let radius = half_width.max(least).min(most);
+        let centre = run.first + run.direction.ahead(radius);
+        return disc(centre, radius);
+    }
+    let width = (run.last - run.first).norm();
+    // Between echoes lie count − 1 spaces; half of one to either side covers what the outermost beams just missed.
+    let spaces = (run.count as i32).saturating_sub(1);
+    let missed = Metres::from_bits(width.bits().checked_div(spaces).unwrap_or(0) >> 1);
+    let half_width = Metres::from_bits(width.bits() >> 1) + missed.max(run.spread);
+    if run.count >= ENOUGH
+        && let Some(fit) = fit_circle(run.points(echoes))
+        && fit.radius >= least
+        && fit.radius <= most
+        && sagitta(half_width, fit.radius) >= ring.residual
+        && fit.residual <= ring.residual
+        && fit.centre.norm_squared() > square(run.nearest)
+    {
+        return Obstacle {
+            residual: fit.residual,
+            ..disc(fit.centre, fit.radius)
         };
-        if step < count && joined & bit(index) != 0 {
-            continue;
-        }
-        let obstacle = circle_of(ring, &Run::of(sensed, from, to));
-        insert(&mut sensed.obstacles, &mut keys, obstacle);
-        from = to;
     }
-}
-
-/// One bit for each echo.
-const fn bit(index: usize) -> u64 {
-    1u64.wrapping_shl(index as u32)
-}
-
-/// Consecutive echoes of one obstacle: up to the end of the list, and on from its beginning.
-struct Run<'a> {
-    points: [&'a [Point]; 2],
-    spreads: [&'a [Metres]; 2],
-}
-
-impl<'a> Run<'a> {
-    /// The echoes `from..to`, counted on past the end of the list.
-    fn of(sensed: &'a Sensed, from: usize, to: usize) -> Self {
-        let count = sensed.echoes.len();
-        let (head, tail) = (from..to.min(count), ..to.saturating_sub(count));
-        Self {
-            points: [
-                sensed.echoes.get(head.clone()).unwrap_or_default(),
-                sensed.echoes.get(tail).unwrap_or_default(),
-            ],
-            spreads: [
-                sensed.spreads.get(head).unwrap_or_default(),
-                sensed.spreads.get(tail).unwrap_or_default(),
-            ],
-        }
-    }
-
-    fn points(&self) -> impl Iterator<Item = Point> + Clone {
-        let [head, tail] = self.points;
-        head.iter().chain(tail).copied()
-    }
-
-    fn spreads(&self) -> impl Iterator<Item = Metres> {
-        let [head, tail] = self.spreads;
-        head.iter().chain(tail).copied()
-    }
-
-    fn count(&self) -> usize {
-        let [head, tail] = self.points;
-        head.len().saturating_add(tail.len())
-    }
-
-    fn ends(&self) -> (Point, Point) {
-        let [head, tail] = self.points;
-        let first = head.first().or(tail.first());
-        let last = tail.last().or(head.last());
-        (
-            first.copied().unwrap_or_default(),
-            last.copied().unwrap_or_default(),
-        )
-    }
+    let radius = half_width.max(least).min(most);
+    let middle = run.first + run.last;
+    let centre = stretched(middle, middle.norm(), run.nearest + radius);
+    disc(centre, radius)
 }
 
 fn judge<const N: usize>(
@@ -155,59 +256,33 @@ fn judge<const N: usize>(
     }
 }
 
-/// The circle behind a segment.
-///
-/// A fit is believed with at least [`ENOUGH`] echoes, a radius and residual within the ring's bounds, and a sagitta of
-/// the arc seen that is not lost in that residual (a flatter arc says nothing about its radius). Otherwise the
-/// disc that can have made the echoes stands in: as wide as they are, and to either side half a beam's spacing or half a
-/// cone's width, whichever is more; its surface through the nearest.
-fn circle_of<const N: usize>(ring: &RingGeometry<N>, run: &Run<'_>) -> Obstacle {
-    let [least, most] = ring.radius;
-    let echoes = u8::try_from(run.count()).unwrap_or(u8::MAX);
-    let (first, last) = run.ends();
-    let width = (last - first).norm();
-    let nearest = root(run.points().map(Point::norm_squared).min().unwrap_or(0));
-    // Between echoes lie count − 1 spaces; half of one to either side covers what the outermost beams just missed. A
-    // single echo shows no space: there it is the ring's.
-    let missed = match i32::from(echoes).checked_sub(1).filter(|n| *n > 0) {
-        Some(spaces) => Metres::from_bits(width.bits().checked_div(spaces).unwrap_or(0) >> 1),
-        None => spread(nearest, pitch(ring)),
+/// The point in the direction of `point`, which is `from` away, at the distance `to`; straight ahead for a point at the
+/// centre.
+fn stretched(point: Point, from: Metres, to: Metres) -> Point {
+    let factor = divide(
+        u64::from(to.bits().unsigned_abs()) << 16,
+        from.bits().unsigned_abs(),
+    );
+    let Some(factor) = factor else {
+        return Point::new(to, Metres::ZERO);
     };
-    let cone = run.spreads().max().unwrap_or(Metres::ZERO);
-    let half_width = Metres::from_bits(width.bits() >> 1) + missed.max(cone);
-    if run.count() >= ENOUGH
-        && let Some(fit) = fit_circle(run.points())
-        && fit.radius >= least
-        && fit.radius <= most
-        && sagitta(half_width, fit.radius) >= ring.residual
-        && fit.residual <= ring.residual
-        && run
-            .points()
-            .any(|p| p.norm_squared() < fit.centre.norm_squared())
-    {
-        return Obstacle {
-            centre: fit.centre,
-            radius: fit.radius,
-            residual: fit.residual,
-            echoes,
-        };
-    }
-    let radius = half_width.max(least).min(most);
-    Obstacle {
-        centre: Point::polar(nearest + radius, (first + last).direction()),
-        radius,
-        residual: ring.residual,
-        echoes,
-    }
+    let times = |x: Metres| {
+        let wide = i64::from(x.bits()).wrapping_mul(factor as i64);
+        Metres::from_bits(saturate(wide.wrapping_add(1 << 15) >> 16))
+    };
+    Point::new(times(point.x), times(point.y))
 }
 
-/// Half the width that an angle spans at `distance`.
-fn spread(distance: Metres, angle: Angle) -> Metres {
-    if angle == Angle::ZERO {
-        return Metres::ZERO;
+/// Half the width, as a share of the distance, that an angle spans: the sine of its half.
+fn half_sine(angle: Angle) -> I2F30 {
+    let half = Angle::from_bits(angle.bits() >> 1)
+        .limit(Angle::QUARTER)
+        .abs();
+    if half == Angle::ZERO {
+        return I2F30::ZERO;
     }
-    let half = Angle::from_bits(angle.bits() >> 1).limit(Angle::QUARTER);
-    Point::polar(distance, half).y.abs()
+    let (_, sine) = half.cos_sin();
+    sine
 }
 
 /// Angle between two neighbouring sensors, from the first two; none in a ring of one.
@@ -220,43 +295,10 @@ fn pitch<const N: usize>(ring: &RingGeometry<N>) -> Angle {
 
 /// Height of an arc of `radius` over its chord, h²/2r: exact enough to tell an arc from a line.
 fn sagitta(half_chord: Metres, radius: Metres) -> Metres {
-    let square = i64::from(half_chord.bits()).pow(2);
-    let twice = i64::from(radius.bits()).saturating_mul(2);
-    Metres::from_bits(square.checked_div(twice).map_or(0, saturate))
+    let halved = square(half_chord) >> 1;
+    let height = divide(halved, radius.bits().unsigned_abs()).unwrap_or(0);
+    Metres::from_bits(i32::try_from(height).unwrap_or(i32::MAX))
 }
 
 /// Echoes from which a fit is believed: with fewer, a centimetre of noise doubles the radius.
 const ENOUGH: usize = 5;
-
-/// Keeps the list sorted by the distance of the surface, which `keys` holds, and drops the farthest when full.
-fn insert(
-    obstacles: &mut Vec<Obstacle, MAX_OBSTACLES>,
-    keys: &mut Vec<Metres, MAX_OBSTACLES>,
-    new: Obstacle,
-) {
-    let key = new.centre.norm() - new.radius;
-    if obstacles.push(new).is_err() || keys.push(key).is_err() {
-        let last = (obstacles.last_mut(), keys.last_mut());
-        let (Some(obstacle), Some(farthest)) = last else {
-            return;
-        };
-        if *farthest <= key {
-            return;
-        }
-        (*obstacle, *farthest) = (new, key);
-    }
-    // Down to its place: neighbours swap while they are the wrong way round.
-    let mut at = keys.len();
-    while at >= 2 {
-        at = at.saturating_sub(1);
-        let pair = keys.get_mut(at.saturating_sub(1)..=at);
-        let Some([left, right]) = pair else { return };
-        if *left <= *right {
-            return;
-        }
-        core::mem::swap(left, right);
-        if let Some([left, right]) = obstacles.get_mut(at.saturating_sub(1)..=at) {
-            core::mem::swap(left, right);
-        }
-    }
-}
