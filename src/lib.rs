@@ -60,6 +60,7 @@ pub mod geometry;
 pub mod guard;
 pub mod guide;
 mod integer;
+pub mod link;
 pub mod localise;
 pub mod params;
 pub mod ports;
