@@ -3,4 +3,7 @@
 //!
 //! No stage of the tick knows of it.
 
+pub mod frame;
+pub mod message;
 pub mod record;
+pub mod settings;

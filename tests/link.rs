@@ -2,13 +2,22 @@
 
 use fuzzypilot::fuzzy::{FiredRule, Grade};
 use fuzzypilot::geometry::{Point, Pose};
+use fuzzypilot::link::frame::{self, Counters, Decoder, FrameError, MAX_FRAME, MAX_MESSAGE};
+use fuzzypilot::link::message::{MAX_READINGS, Readings, ToTarget};
 use fuzzypilot::link::record::{self, RECORD_BYTES};
+use fuzzypilot::link::settings::{self, Format, SetError};
+use fuzzypilot::params::{
+    Avoider, Body, Follower, Guard, Limits, Mount, Params, RingGeometry, Supervisor,
+};
+use fuzzypilot::ports::{Fault, Range, RangeReading};
+use fuzzypilot::presets;
 use fuzzypilot::signals::{
     Controller, Decision, Guidance, Obstacle, RuleTrace, StopReason, TickRecord, Turn, Twist,
     WheelCommand,
 };
-use fuzzypilot::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
+use fuzzypilot::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond, Seconds};
 use proptest::prelude::*;
+use std::collections::BTreeSet;
 
 /// A failure prints its smallest input; nothing is written beside the tests.
 fn config(cases: u32) -> ProptestConfig {
@@ -180,4 +189,354 @@ proptest! {
             prop_assert_eq!(record::encode(&record), bytes);
         }
     }
+}
+
+// ---- frames ----
+
+/// A frame around a message, as sent.
+fn wire(sequence: u8, message: &impl serde::Serialize) -> Vec<u8> {
+    let mut wire = [0xaa; MAX_FRAME];
+    frame::encode(sequence, message, &mut wire)
+        .unwrap()
+        .to_vec()
+}
+
+/// What a decoder makes of a stream: the messages' bytes with their sequence numbers, and the errors.
+type Received = Result<(u8, Vec<u8>), FrameError>;
+
+fn receive(decoder: &mut Decoder, stream: &[u8]) -> Vec<Received> {
+    let mut received = Vec::new();
+    for &byte in stream {
+        if let Some(result) = decoder.push(byte) {
+            received.push(result.map(|frame| (frame.sequence, frame.message.to_vec())));
+        }
+    }
+    received
+}
+
+/// Raw bytes as COBS with a terminator, written from the algorithm's description: each block is its length plus one
+/// and the bytes up to the next zero.
+fn cobs(raw: &[u8]) -> Vec<u8> {
+    let mut wire: Vec<u8> = raw
+        .split(|byte| *byte == 0)
+        .flat_map(|block| [&[block.len() as u8 + 1], block].concat())
+        .collect();
+    wire.push(0);
+    wire
+}
+
+/// A raw frame with its CRC, by the polynomial's definition.
+fn enveloped(content: &[u8]) -> Vec<u8> {
+    let mut crc = !0u32;
+    for byte in content {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 };
+        }
+    }
+    [content, &(!crc).to_le_bytes()].concat()
+}
+
+#[test]
+fn a_frame_is_what_the_document_says() {
+    let stop = wire(7, &ToTarget::Stop);
+    assert_eq!(stop, cobs(&enveloped(&[1, 7, 11])));
+    let zeros = wire(
+        0,
+        &ToTarget::PathPoint {
+            index: 0,
+            x: 0,
+            y: 0,
+            heading: 0,
+        },
+    );
+    assert_eq!(zeros, cobs(&enveloped(&[1, 0, 6, 0, 0, 0, 0])));
+}
+
+#[test]
+fn every_fault_of_a_frame_has_its_name_and_count() {
+    let good = wire(1, &ToTarget::Status);
+    let mut changed = good.clone();
+    changed[3] ^= 0x10;
+    let cases = [
+        (vec![0x55; 64], FrameError::Overlong),
+        (vec![0x55; 700], FrameError::Overlong),
+        (good[..good.len() - 2].to_vec(), FrameError::Truncated),
+        (vec![3], FrameError::Truncated),
+        (cobs(&[1, 2, 3, 4])[..5].to_vec(), FrameError::Truncated),
+        (changed[..changed.len() - 1].to_vec(), FrameError::Corrupt),
+        (
+            cobs(&enveloped(&[2, 9, 1]))[..8].to_vec(),
+            FrameError::Version {
+                found: 2,
+                sequence: 9,
+            },
+        ),
+    ];
+    let mut decoder = Decoder::new();
+    let mut counters = Counters::new();
+    for (mut stream, error) in cases {
+        stream.push(0);
+        for byte in stream {
+            if let Some(result) = decoder.push(byte) {
+                counters.note(&result);
+                assert_eq!(result, Err(error));
+            }
+        }
+        // The next one is whole again.
+        for &byte in &good {
+            if let Some(result) = decoder.push(byte) {
+                counters.note(&result);
+                assert_eq!(
+                    result.map(|frame| frame.parse()),
+                    Ok(Some(ToTarget::Status))
+                );
+            }
+        }
+    }
+    let expected = Counters {
+        good: 7,
+        overlong: 2,
+        truncated: 3,
+        corrupt: 1,
+        version: 1,
+    };
+    assert_eq!(counters, expected);
+    // Silence between frames is neither.
+    assert_eq!(receive(&mut decoder, &[0, 0, 0]), []);
+}
+
+#[test]
+fn a_message_fills_its_bytes_exactly() {
+    let parse = |message: &[u8]| {
+        let frame = frame::Frame {
+            sequence: 0,
+            check: 0,
+            message,
+        };
+        frame.parse::<ToTarget<'_>>().is_some()
+    };
+    assert!(parse(&[3, 5, 1]));
+    assert!(!parse(&[3, 5, 1, 0]), "a byte too many");
+    assert!(!parse(&[3, 5]), "a byte missing");
+    assert!(!parse(&[15]), "no such message");
+    assert!(!parse(&[]), "nothing");
+}
+
+proptest! {
+    #![proptest_config(config(2_000))]
+
+    /// Whatever the bytes, they come back, as the independent encoder above has them on the wire.
+    #[test]
+    fn any_message_survives_its_frame(
+        sequence in any::<u8>(),
+        message in prop::collection::vec(prop_oneof![Just(0u8), any::<u8>()], 0..MAX_MESSAGE),
+    ) {
+        let frame = wire(sequence, &message.as_slice());
+        prop_assert!(frame.len() <= MAX_FRAME);
+        let content = [&[1, sequence, message.len() as u8], message.as_slice()].concat();
+        prop_assert_eq!(&frame, &cobs(&enveloped(&content)));
+        let received = receive(&mut Decoder::new(), &frame);
+        prop_assert_eq!(received, [Ok((sequence, content[2..].to_vec()))]);
+    }
+
+    /// Noise is never a message, and at most one good frame after it is lost.
+    #[test]
+    fn noise_is_survived(noise in prop::collection::vec(any::<u8>(), 0..200)) {
+        let good = wire(1, &ToTarget::Status);
+        let mut decoder = Decoder::new();
+        let received = receive(&mut decoder, &noise);
+        prop_assert!(received.iter().all(Result::is_err));
+        receive(&mut decoder, &good);
+        prop_assert_eq!(receive(&mut decoder, &good), [Ok((1, vec![1]))]);
+    }
+
+    /// Any change of a single byte is noticed.
+    #[test]
+    fn a_changed_byte_is_noticed(at in 0usize..20, by in 1u8..) {
+        let message = ToTarget::PathLine {
+            index: 3, x: 70_000, y: -1, heading: i32::MIN, length: 1,
+        };
+        let mut frame = wire(9, &message);
+        let at = at % (frame.len() - 1);
+        frame[at] ^= by;
+        prop_assert!(receive(&mut Decoder::new(), &frame).iter().all(Result::is_err));
+    }
+}
+
+// ---- readings ----
+
+fn reading() -> impl Strategy<Value = RangeReading> {
+    let fault = prop_oneof![
+        Just(Fault::NeverSeen),
+        Just(Fault::Timeout),
+        Just(Fault::Bus),
+        Just(Fault::OutOfRange),
+        Just(Fault::Stale),
+    ];
+    let range = prop_oneof![
+        metres().prop_map(Range::Echo),
+        Just(Range::Clear),
+        fault.prop_map(Range::Invalid),
+    ];
+    let age = prop_oneof![Just(0), any::<i32>()].prop_map(Seconds::from_bits);
+    (range, age).prop_map(|(range, age)| RangeReading { range, age })
+}
+
+proptest! {
+    #![proptest_config(config(1_000))]
+
+    #[test]
+    fn a_ring_survives_its_frames(ring in prop::collection::vec(reading(), 1..=64)) {
+        let (mut rest, mut back) = (ring.as_slice(), Vec::new());
+        while !rest.is_empty() {
+            let mut room = [0; MAX_READINGS];
+            let (readings, count) = Readings::pack(rest, &mut room);
+            prop_assert!(count >= rest.len().min(4));
+            let ranges = ToTarget::Ranges { scan: 255, first: back.len() as u8, readings };
+            let frame = wire(0, &ranges);
+            let mut decoder = Decoder::new();
+            let sent = frame.iter().find_map(|byte| match decoder.push(*byte) {
+                Some(Ok(_)) => Some(()),
+                _ => None,
+            });
+            prop_assert!(sent.is_some());
+            back.extend(readings.iter().map(Option::unwrap));
+            rest = &rest[count..];
+        }
+        prop_assert_eq!(back, ring);
+    }
+}
+
+/// Readings that are none stop the list, once.
+#[test]
+fn what_is_no_reading_ends_the_readings() {
+    let message = [12, 1, 0, 4, 1, 0, 9, 1];
+    let frame = frame::Frame {
+        sequence: 0,
+        check: 0,
+        message: &message,
+    };
+    let Some(ToTarget::Ranges { readings, .. }) = frame.parse() else {
+        panic!("not understood");
+    };
+    let clear = RangeReading::fresh(Range::Clear);
+    assert_eq!(readings.iter().collect::<Vec<_>>(), [Some(clear), None]);
+}
+
+// ---- settings ----
+
+/// A setting outside the table would be one that no desktop can see. Adding a field breaks this pattern: give it an id,
+/// and the table its row.
+#[test]
+fn every_setting_has_an_id() {
+    let params = presets::small_robot::<2>();
+    #[rustfmt::skip]
+    let Params {
+        body: Body { radius: _, track: _, metres_per_count: _ },
+        limits: Limits { speed: _, yaw_rate: _, acceleration: _, yaw_acceleration: _, wheel_speed: _ },
+        period: _, latency: _, integrator: _,
+        ring: RingGeometry { mounts, closed: _, max_range: _, max_age: _, gap: _, radius: [_, _], residual: _ },
+        follower: Follower {
+            law: _, tables: _, speed_axis: _, distance_scale: _, deflection_rate: _, approach_gain: _,
+            approach_angle: _, feed_forward_band: _, lateral_acceleration: _, corner_speed: _, reach: _,
+            arrival: _, end_radius: _,
+        },
+        avoider: Avoider { tables: _, speed_input: _, range: _, margin: _, deflection_rate: _, overshoot: _ },
+        supervisor: Supervisor { enter: _, exit: _, dwell: _, clear: _, tie: _, same: _, patience: _ },
+        guard: Guard { margin: _, braking: _ },
+    } = params;
+    let [Mount { pose: _, width: _ }, _] = mounts.into_array().unwrap();
+    assert_eq!(settings::SETTINGS.len(), 3 + 5 + 3 + 7 + 13 + 6 + 7 + 2);
+}
+
+/// Each id moves one value, its own, and takes every value that its format has.
+#[test]
+fn settings_are_read_and_written_by_id() {
+    let fresh = presets::small_robot::<3>();
+    let mut params = fresh.clone();
+    let ids: Vec<_> = settings::list(3).map(|setting| setting.id).collect();
+    assert_eq!(ids.len(), settings::SETTINGS.len() + 1 + 12);
+    assert!(ids.is_sorted_by(|a, b| a < b));
+    let all = |params: &Params<3>| -> Vec<i32> {
+        ids.iter()
+            .map(|id| settings::get(params, *id).unwrap())
+            .collect()
+    };
+    let before = all(&params);
+    for (place, setting) in settings::list(3).enumerate() {
+        if setting.id == settings::MOUNTS {
+            continue;
+        }
+        let old = before[place];
+        let (values, bad) = match setting.format {
+            Format::Choice(names) => ((0..names.len() as i32).collect(), [-1, names.len() as i32]),
+            Format::Whole(most) => (vec![0, i32::from(most)], [-1, i32::from(most) + 1]),
+            _ => (vec![i32::MIN, -1, 0, 1, i32::MAX], [0; 2]),
+        };
+        for raw in values {
+            assert_eq!(
+                settings::set(&mut params, setting.id, raw),
+                Ok(()),
+                "{}",
+                setting.name
+            );
+            let mut expected = before.clone();
+            expected[place] = raw;
+            assert_eq!(all(&params), expected, "{}", setting.name);
+        }
+        for raw in bad.into_iter().filter(|raw| *raw != 0) {
+            let refused = settings::set(&mut params, setting.id, raw);
+            assert_eq!(refused, Err(SetError::NotAllowed), "{}", setting.name);
+        }
+        settings::set(&mut params, setting.id, old).unwrap();
+        assert_eq!(params, fresh, "{}", setting.name);
+    }
+    for id in [0, 4, 255, settings::MOUNTS + 13, u16::MAX] {
+        assert_eq!(settings::get(&params, id), None);
+        assert_eq!(settings::set(&mut params, id, 0), Err(SetError::UnknownId));
+    }
+}
+
+#[test]
+fn sensors_are_mounted_by_number() {
+    let mut params = presets::small_robot::<3>();
+    assert_eq!(settings::get(&params, settings::MOUNTS), Some(3));
+    settings::set(&mut params, settings::MOUNTS, 1).unwrap();
+    assert_eq!(params.ring.mounts.len(), 1);
+    assert_eq!(settings::get(&params, settings::MOUNTS + 5), None);
+    settings::set(&mut params, settings::MOUNTS, 2).unwrap();
+    assert_eq!(params.ring.mounts.get(1), Some(&Mount::default()));
+    settings::set(&mut params, settings::MOUNTS + 5 + 2, 99).unwrap();
+    assert_eq!(params.ring.mounts[1].pose.heading, Angle::from_bits(99));
+    for raw in [-1, 4] {
+        let refused = settings::set(&mut params, settings::MOUNTS, raw);
+        assert_eq!(refused, Err(SetError::NotAllowed));
+    }
+}
+
+/// Whatever [`Params::check`] objects to has an id: a desktop can say which setting it was.
+#[test]
+fn a_refused_setting_has_an_id() {
+    let mut named = BTreeSet::new();
+    for setting in settings::list(2) {
+        for raw in [i32::MIN, -1, 0, i32::MAX] {
+            let mut params = presets::small_robot::<2>();
+            if settings::set(&mut params, setting.id, raw).is_err() {
+                continue;
+            }
+            if let Err(error) = params.check() {
+                let id = settings::id_of(error.field);
+                named.insert(error.field);
+                assert!(id.is_some(), "{} has no id", error.field);
+            }
+        }
+    }
+    assert!(named.len() > 30, "{named:?}");
+    assert_eq!(settings::id_of("ring.radius"), Some(34));
+    assert_eq!(
+        settings::id_of("supervisor.enter, supervisor.exit"),
+        Some(70)
+    );
+    assert_eq!(settings::id_of("body"), None);
 }
