@@ -3,7 +3,9 @@
 mod cursor;
 mod law;
 mod path;
+mod store;
 
 pub use cursor::{Cursor, Fix, LOOK};
 pub use law::guide;
 pub use path::{MAX_PIECES, Path, PathError, Segment, Waypoint};
+pub use store::{StoreError, StoredPath};

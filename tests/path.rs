@@ -4,7 +4,9 @@
 use core::f64::consts::{PI, TAU};
 use fixed::types::I16F16;
 use fuzzypilot::geometry::{Point, Pose};
-use fuzzypilot::guide::{Cursor, Fix, MAX_PIECES, Path, PathError, Segment, Waypoint};
+use fuzzypilot::guide::{
+    Cursor, Fix, MAX_PIECES, Path, PathError, Segment, StoreError, StoredPath, Waypoint,
+};
 use fuzzypilot::units::{Angle, Metres, MetresPerSecond, PerMetre};
 use proptest::prelude::*;
 
@@ -733,4 +735,66 @@ proptest! {
             exercise(&path, &places)?;
         }
     }
+
+    /// A stored path is the borrowed one, refusals included, and a refused one is no path.
+    #[test]
+    fn a_stored_path_is_the_borrowed_one(
+        segments in prop::collection::vec(raw_segment(), 0..4),
+        points in prop::collection::vec(raw_pose(), 0..6),
+        closed in any::<bool>(),
+        gaps in any::<bool>(),
+    ) {
+        let mut store: StoredPath<4, 6> = StoredPath::new();
+        store.begin_segments(closed);
+        for segment in &segments {
+            store.push_segment(*segment).unwrap();
+        }
+        let borrowed = match gaps {
+            true => Path::segments_with_gaps(&segments, closed),
+            false => Path::segments(&segments, closed),
+        };
+        prop_assert_eq!(store.commit(gaps), borrowed.map(|_| ()));
+        prop_assert_eq!(store.path(), borrowed.ok());
+        store.begin_points(closed);
+        prop_assert_eq!(store.path(), None);
+        for point in &points {
+            store.push_point(*point).unwrap();
+        }
+        let borrowed = Path::points(&points, closed);
+        prop_assert_eq!(store.commit(gaps), borrowed.map(|_| ()));
+        prop_assert_eq!(store.path(), borrowed.ok());
+        let mut other: StoredPath<1, 6> = StoredPath::new();
+        if let Ok(path) = borrowed {
+            prop_assert_eq!(other.copy(&path), Ok(()));
+            prop_assert_eq!(other.path(), Some(path));
+        }
+    }
+}
+
+#[test]
+fn a_store_says_what_it_cannot_take() {
+    let line = Segment::line(Pose::default(), metres(1.0));
+    let mut store: StoredPath<1, 2> = StoredPath::new();
+    assert_eq!(store.commit(false), Err(PathError::TooShort));
+    assert_eq!(
+        store.push_point(Pose::default()),
+        Err(StoreError::OtherForm)
+    );
+    store.push_segment(line).unwrap();
+    store.commit(false).unwrap();
+    assert!(store.path().is_some());
+    // A piece too many changes the path that was checked: it is none any more.
+    assert_eq!(store.push_segment(line), Err(StoreError::Full { most: 1 }));
+    assert!(store.path().is_none());
+    store.begin_points(true);
+    assert_eq!(store.stored(), 0);
+    assert_eq!(store.push_segment(line), Err(StoreError::OtherForm));
+    let three = [
+        pose(0.0, 0.0, 0.0),
+        pose(1.0, 0.0, 0.0),
+        pose(2.0, 0.0, 0.0),
+    ];
+    let path = Path::points(&three, false).unwrap();
+    assert_eq!(store.copy(&path), Err(StoreError::Full { most: 2 }));
+    assert!(store.path().is_none());
 }

@@ -295,6 +295,15 @@ impl<'a> Path<'a> {
         Ok(path)
     }
 
+    /// A path whose pieces were checked once and have not changed since.
+    pub(crate) const fn checked_before(pieces: Pieces<'a>, closed: bool, length: Metres) -> Self {
+        Self {
+            pieces,
+            closed,
+            length,
+        }
+    }
+
     /// Number of pieces, one or more.
     pub fn count(&self) -> usize {
         match self.pieces {
