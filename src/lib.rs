@@ -63,6 +63,7 @@ mod integer;
 pub mod link;
 pub mod localise;
 pub mod params;
+pub mod pilot;
 pub mod ports;
 pub mod presets;
 pub mod sense;

@@ -1,0 +1,336 @@
+//! The application around the tick, without hardware: arming, the stored path, the desktop's wish. Every board runs
+//! it, and so do the tests on a desktop.
+//!
+//! A board calls [`Pilot::control`] every control period, [`Pilot::receive`] with every byte that its serial port took
+//! in, and [`Pilot::button`], [`Pilot::emergency`] and [`Pilot::fault`] when there is something to tell. Time is an
+//! argument, a microsecond counter that may wrap; it must be read once a wrap at least.
+//!
+//! In the [`Role::Monitor`] the robot drives by the board's ports, and whether a desktop listens does not matter to it.
+//! In the [`Role::Lockstep`] sensors and time come in frames, each tick's record goes back, and the board's own wheels
+//! are commanded to stand.
+
+mod arming;
+mod dialogue;
+mod lockstep;
+mod session;
+
+pub use arming::State;
+
+use crate::geometry::Pose;
+use crate::guide::{Path, StoreError, StoredPath};
+use crate::link::frame::{Counters, Decoder, FrameError};
+use crate::link::message::{Cause, Role, Why};
+use crate::link::record::{self, RECORD_BYTES};
+use crate::link::settings;
+use crate::params::Params;
+use crate::ports::{Ports, RangeSensors, Side, WheelDrive, WheelEncoders};
+use crate::signals::{Decision, StopReason, TickRecord, Twist, WheelCommand};
+use crate::tick::Robot;
+use crate::units::{MetresPerSecond, Seconds};
+use arming::Arming;
+use lockstep::Scan;
+use session::{Answer, Session};
+
+/// A tick may come this much later than its period before the robot is disarmed.
+pub const GRACE_US: u32 = 200_000;
+
+/// A lock-step session without a frame for this long, by the board's own clock, is over: the robot is its own again.
+pub const SILENCE_US: u32 = 10_000_000;
+
+/// A robot with up to `N` range sensors, room for a path of `SEGMENTS` lines and arcs or `POINTS` points, and a link.
+#[derive(Clone, Debug)]
+pub struct Pilot<const N: usize, const SEGMENTS: usize, const POINTS: usize> {
+    decoder: Decoder,
+    counters: Counters,
+    core: Core<N, SEGMENTS, POINTS>,
+}
+
+/// All but the frames' decoder, which lends the message while this acts on it.
+#[derive(Clone, Debug)]
+struct Core<const N: usize, const SEGMENTS: usize, const POINTS: usize> {
+    robot: Robot<N>,
+    /// Where a run begins.
+    home: Pose,
+    path: StoredPath<SEGMENTS, POINTS>,
+    upload: Option<Upload>,
+    arming: Arming,
+    session: Session,
+    scan: Scan<N>,
+    /// The last tick's record, encoded.
+    record: Option<[u8; RECORD_BYTES]>,
+    /// Number of the robot's next tick.
+    next_tick: u32,
+    /// When the last tick was, since arming.
+    ticked_us: Option<u32>,
+    now_us: u32,
+    uptime_us: u64,
+    /// When the desktop was last heard.
+    heard_us: u32,
+    stack: u32,
+}
+
+/// A path that is being sent.
+#[derive(Clone, Copy, Debug)]
+struct Upload {
+    count: u16,
+    gaps: bool,
+}
+
+impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMENTS, POINTS> {
+    /// A robot that stands at `home` (world), disarmed, without a path. Unsound settings are refused when it is to be
+    /// armed.
+    pub fn new(params: Params<N>, home: Pose) -> Self {
+        Self {
+            decoder: Decoder::new(),
+            counters: Counters::new(),
+            core: Core {
+                robot: Robot::new(params, home),
+                home,
+                path: StoredPath::new(),
+                upload: None,
+                arming: Arming::new(),
+                session: Session::new(),
+                scan: Scan::new(),
+                record: None,
+                next_tick: 0,
+                ticked_us: None,
+                now_us: 0,
+                uptime_us: 0,
+                heard_us: 0,
+                stack: 0,
+            },
+        }
+    }
+
+    /// Whether it may move.
+    pub fn state(&self) -> State {
+        self.core.arming.state()
+    }
+
+    /// Who gives it its inputs.
+    pub fn role(&self) -> Role {
+        self.core.session.role
+    }
+
+    /// The robot inside.
+    pub fn robot(&self) -> &Robot<N> {
+        &self.core.robot
+    }
+
+    /// The path, if there is one.
+    pub fn path(&self) -> Option<Path<'_>> {
+        self.core.path.path()
+    }
+
+    /// What came in over the link.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// Takes over a path; disarms.
+    ///
+    /// # Errors
+    ///
+    /// There is no room for it. Then there is no path.
+    pub fn set_path(&mut self, path: &Path<'_>) -> Result<(), StoreError> {
+        self.core.change();
+        self.core.path.copy(path)
+    }
+
+    /// Takes over settings; disarms.
+    pub fn set_params(&mut self, params: &Params<N>) {
+        self.core.change();
+        self.core.robot.params_mut().clone_from(params);
+    }
+
+    /// Tells what a desktop may ask for: the deepest stack so far, in bytes.
+    pub fn note_stack(&mut self, bytes: u32) {
+        self.core.stack = bytes;
+    }
+
+    /// Takes one byte from the link. `out` sends a whole frame; it is called at most three times.
+    pub fn receive(&mut self, byte: u8, now_us: u32, out: &mut impl FnMut(&[u8])) {
+        let Some(result) = self.decoder.push(byte) else {
+            return;
+        };
+        self.counters.note(&result);
+        match result {
+            Ok(frame) => self.core.take(frame, self.counters, now_us, out),
+            Err(FrameError::Version { sequence, .. }) => {
+                let answer = Answer::Refused(Why::Version);
+                self.core.send(sequence, answer, self.counters, out);
+            }
+            Err(_) => {}
+        }
+    }
+
+    /// A control period by the board's own clock and ports. Call it every `params.period`.
+    ///
+    /// Armed, it is a tick, and the record is returned. Disarmed, dead reckoning goes on. In lock-step the ticks are the
+    /// desktop's. Whatever it is, both wheels are commanded.
+    pub fn control<D, E, R>(
+        &mut self,
+        now_us: u32,
+        ports: &mut Ports<D, E, R>,
+    ) -> Option<TickRecord>
+    where
+        D: WheelDrive,
+        E: WheelEncoders,
+        R: RangeSensors,
+    {
+        self.core.control(now_us, ports)
+    }
+
+    /// The button was pressed. An armed robot is disarmed; a disarmed one is taken to stand at home, where the last
+    /// [`Begin`](crate::link::message::ToTarget::Begin) or [`Pilot::new`] put it, and drives its path from the start.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be armed; it stays disarmed.
+    pub fn button(&mut self, now_us: u32) -> Result<State, Why> {
+        self.core.clock(now_us);
+        if self.core.arming.is_armed() {
+            self.core.disarm(Cause::Button);
+        } else if self.core.session.role == Role::Lockstep {
+            return Err(Why::Role);
+        } else {
+            self.core.begin(self.core.home)?;
+            self.core.arm()?;
+        }
+        Ok(self.state())
+    }
+
+    /// Tells whether the emergency stop is pressed. While it is, nothing arms the robot.
+    pub fn emergency(&mut self, pressed: bool) {
+        self.core.arming.emergency = pressed;
+        if pressed {
+            self.core.disarm(Cause::Emergency);
+        }
+    }
+
+    /// Disarms for a cause that the board has found; at its start, why it was reset.
+    pub fn fault(&mut self, cause: Cause) {
+        self.core.arming.fault(cause);
+        self.core.ticked_us = None;
+    }
+}
+
+impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENTS, POINTS> {
+    /// Lets time pass. A stamp from before the last one, taken by an interrupt that came between, changes nothing.
+    fn clock(&mut self, now_us: u32) {
+        let elapsed = now_us.wrapping_sub(self.now_us);
+        if elapsed <= i32::MAX as u32 {
+            self.now_us = now_us;
+            self.uptime_us = self.uptime_us.wrapping_add(elapsed.into());
+        }
+        let silent = self.now_us.wrapping_sub(self.heard_us);
+        if self.session.role == Role::Lockstep && (SILENCE_US..=i32::MAX as u32).contains(&silent) {
+            self.disarm(Cause::LinkTimeout);
+            self.session.close();
+            self.come_home();
+        }
+    }
+
+    fn control<D, E, R>(&mut self, now_us: u32, ports: &mut Ports<D, E, R>) -> Option<TickRecord>
+    where
+        D: WheelDrive,
+        E: WheelEncoders,
+        R: RangeSensors,
+    {
+        self.clock(now_us);
+        if self.session.role == Role::Lockstep {
+            // Neither result matters: the robot does not drive by these wheels.
+            let _ = ports.drive.set_speed(Side::Left, MetresPerSecond::ZERO);
+            let _ = ports.drive.set_speed(Side::Right, MetresPerSecond::ZERO);
+            return None;
+        }
+        if self.arming.is_armed() && !self.in_time(now_us) {
+            self.disarm(Cause::Overrun);
+        }
+        let path = self.path.path().filter(|_| self.arming.is_armed());
+        let Some(path) = path else {
+            self.arming.drive_fault = self.robot.rest(ports);
+            return None;
+        };
+        let record = self.robot.tick(&path, ports);
+        self.ticked(now_us, &record);
+        let over = matches!(
+            record.decision,
+            Decision::Stop(StopReason::PathEnd | StopReason::PathMissed)
+        );
+        if record.drive_fault {
+            self.disarm(Cause::DriveFault);
+        } else if over && (record.twist, record.wheels) == <(Twist, WheelCommand)>::default() {
+            self.disarm(Cause::PathOver);
+        }
+        Some(record)
+    }
+
+    /// Whether no more than a period and [`GRACE_US`] went by since the last tick.
+    fn in_time(&self, now_us: u32) -> bool {
+        let most = micros(self.robot.params().period).saturating_add(GRACE_US);
+        self.ticked_us
+            .is_none_or(|last| now_us.wrapping_sub(last) <= most)
+    }
+
+    fn ticked(&mut self, now_us: u32, record: &TickRecord) {
+        self.ticked_us = Some(now_us);
+        self.next_tick = record.tick.wrapping_add(1);
+        self.record = Some(record::encode(record));
+    }
+
+    fn arm(&mut self) -> Result<(), Why> {
+        self.arming.arm()?;
+        self.ticked_us = None;
+        Ok(())
+    }
+
+    fn disarm(&mut self, cause: Cause) {
+        self.arming.disarm(cause);
+        self.ticked_us = None;
+        self.scan.clear();
+    }
+
+    /// Places the robot at the beginning of its path, if settings and path are sound.
+    fn begin(&mut self, start: Pose) -> Result<(), Why> {
+        if self.arming.is_armed() {
+            return Err(Why::NotDisarmed);
+        }
+        if self.path.path().is_none() {
+            return Err(Why::NoPath);
+        }
+        self.robot.restart(start).map_err(|error| Why::Setting {
+            // Every field that the check names has an id; a test holds that.
+            id: settings::id_of(error.field).unwrap_or(0),
+        })?;
+        self.home = start;
+        self.next_tick = 0;
+        self.scan.clear();
+        self.arming.begun = true;
+        Ok(())
+    }
+
+    /// Settings or path are about to change at the board's wish.
+    fn change(&mut self) {
+        self.disarm(Cause::SettingsChanged);
+        self.arming.begun = false;
+        self.upload = None;
+    }
+
+    /// What the robot believes came from other sensors than those that it has now.
+    fn come_home(&mut self) {
+        self.arming.begun = false;
+        self.scan.clear();
+        self.record = None;
+        // With unsound settings nothing is forgotten, and nothing can be armed either.
+        let _ = self.robot.restart(self.home);
+        self.next_tick = 0;
+    }
+}
+
+/// Whole microseconds; none below zero.
+fn micros(time: Seconds) -> u32 {
+    let bits = u64::from(time.bits().max(0).unsigned_abs());
+    // Below 2^31 · 10^6 / 2^24 < 2^28.
+    (bits.wrapping_mul(1_000_000) >> 24) as u32
+}
