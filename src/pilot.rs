@@ -23,7 +23,7 @@ use crate::link::message::{Cause, Role, Why};
 use crate::link::record::{self, RECORD_BYTES};
 use crate::link::settings;
 use crate::params::Params;
-use crate::ports::{Ports, RangeSensors, Side, WheelDrive, WheelEncoders};
+use crate::ports::{Fault, Ports, RangeSensors, Side, WheelDrive, WheelEncoders};
 use crate::signals::{Decision, StopReason, TickRecord, Twist, WheelCommand};
 use crate::tick::Robot;
 use crate::units::{MetresPerSecond, Seconds};
@@ -62,7 +62,8 @@ struct Core<const N: usize, const SEGMENTS: usize, const POINTS: usize> {
     next_tick: u32,
     /// When the last tick was, since arming.
     ticked_us: Option<u32>,
-    now_us: u32,
+    /// The newest stamp; none before the first.
+    now_us: Option<u32>,
     uptime_us: u64,
     /// When the desktop was last heard.
     heard_us: u32,
@@ -94,7 +95,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
                 record: None,
                 next_tick: 0,
                 ticked_us: None,
-                now_us: 0,
+                now_us: None,
                 uptime_us: 0,
                 heard_us: 0,
                 stack: 0,
@@ -210,21 +211,21 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
 
     /// Disarms for a cause that the board has found; at its start, why it was reset.
     pub fn fault(&mut self, cause: Cause) {
-        self.core.arming.fault(cause);
-        self.core.ticked_us = None;
+        self.core.fault(cause);
     }
 }
 
 impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENTS, POINTS> {
     /// Lets time pass. A stamp from before the last one, taken by an interrupt that came between, changes nothing.
     fn clock(&mut self, now_us: u32) {
-        let elapsed = now_us.wrapping_sub(self.now_us);
-        if elapsed <= i32::MAX as u32 {
-            self.now_us = now_us;
-            self.uptime_us = self.uptime_us.wrapping_add(elapsed.into());
+        let elapsed = now_us.wrapping_sub(self.now_us.unwrap_or(now_us));
+        if elapsed > i32::MAX as u32 {
+            return;
         }
-        let silent = self.now_us.wrapping_sub(self.heard_us);
-        if self.session.role == Role::Lockstep && (SILENCE_US..=i32::MAX as u32).contains(&silent) {
+        self.now_us = Some(now_us);
+        self.uptime_us = self.uptime_us.wrapping_add(elapsed.into());
+        let silent = now_us.wrapping_sub(self.heard_us);
+        if self.session.role == Role::Lockstep && silent > SILENCE_US {
             self.disarm(Cause::LinkTimeout);
             self.session.close();
             self.come_home();
@@ -286,9 +287,17 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
     }
 
     fn disarm(&mut self, cause: Cause) {
-        self.arming.disarm(cause);
+        if self.arming.is_armed() {
+            self.fault(cause);
+        }
+    }
+
+    fn fault(&mut self, cause: Cause) {
+        self.arming.fault(cause);
         self.ticked_us = None;
         self.scan.clear();
+        // The next run sets off from rest, whatever was commanded last.
+        let _ = self.robot.rest(&mut self.scan.ports(Err(Fault::Stale)));
     }
 
     /// Places the robot at the beginning of its path, if settings and path are sound.

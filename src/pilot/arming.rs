@@ -98,14 +98,7 @@ impl Arming {
         }
     }
 
-    /// Disarms; the cause is taken over only if there was something to disarm.
-    pub fn disarm(&mut self, cause: Cause) {
-        if self.armed {
-            self.fault(cause);
-        }
-    }
-
-    /// Disarms, and names the cause in any case.
+    /// Disarms, and names the cause.
     pub fn fault(&mut self, cause: Cause) {
         self.armed = false;
         self.cause = cause;

@@ -37,14 +37,14 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         out: &mut impl FnMut(&[u8]),
     ) {
         self.clock(now_us);
-        self.heard_us = self.now_us;
+        self.heard_us = now_us;
         let (sequence, check) = (frame.sequence, frame.check);
         let answer = match self.session.again(sequence, check) {
             Some(answer) => answer,
             None => {
                 let message = frame.parse();
                 let answer = match (self.session.admits(sequence, message.as_ref()), message) {
-                    (Ok(()), Some(message)) => self.act(message),
+                    (Ok(()), Some(message)) => self.act(message, now_us),
                     (Err(why), _) => Answer::Refused(why),
                     (Ok(()), None) => Answer::Refused(Why::Malformed),
                 };
@@ -56,9 +56,9 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         self.send(sequence, answer, counters, out);
     }
 
-    fn act(&mut self, message: ToTarget<'_>) -> Answer {
+    fn act(&mut self, message: ToTarget<'_>, now_us: u32) -> Answer {
         match message {
-            ToTarget::Hello { nonce, role } => self.hello(nonce, role),
+            ToTarget::Hello { nonce, role } => self.hello(nonce, role, now_us),
             ToTarget::Status => Answer::State,
             ToTarget::Get { id } => match settings::get(self.robot.params(), id) {
                 Some(value) => Answer::Value { id, value },
@@ -134,9 +134,9 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         }
     }
 
-    fn hello(&mut self, nonce: u32, role: Role) -> Answer {
+    fn hello(&mut self, nonce: u32, role: Role, now_us: u32) -> Answer {
         self.disarm(Cause::NewSession);
-        self.arming.open(nonce, self.now_us);
+        self.arming.open(nonce, now_us);
         self.upload = None;
         // A monitor that comes back finds the robot as it left it; a plant is a new one every time.
         if role == Role::Lockstep || self.session.role == Role::Lockstep {
