@@ -912,18 +912,11 @@ fn a_path_comes_piece_by_piece() {
 fn another_version_is_told_so() {
     let mut pilot = new_pilot();
     let mut desk = Desk::new();
-    // A frame of version 2, sequence number 9, message 1, CRC by Python's zlib.crc32.
-    let content: [u8; 3] = [2, 9, 1];
-    let check: u32 = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
-    let raw = [&content[..], &check.to_le_bytes()].concat();
-    let mut wire: Vec<u8> = raw
-        .split(|byte| *byte == 0)
-        .flat_map(|block| [&[block.len() as u8 + 1], block].concat())
-        .collect();
-    wire.push(0);
+    // Version 2, sequence number 10, message 1; the CRC is Python's zlib.crc32(bytes([2, 10, 1])).
+    let wire = [8, 2, 10, 1, 0x60, 0xd5, 0x2d, 0x71, 0];
     assert_eq!(
         desk.deliver(&mut pilot, &wire),
-        [(9, Said::Refused(Why::Version))]
+        [(10, Said::Refused(Why::Version))]
     );
     assert_eq!(pilot.counters().version, 1);
 }

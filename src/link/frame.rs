@@ -5,11 +5,11 @@
 //! wire:  COBS of raw (one byte more, none of them zero) │ 0x00
 //! ```
 //!
-//! A zero always ends a frame, so the receiver finds the next one whatever came before. COBS is written here and not
-//! taken from the `cobs` crate: raw frames are so short that it fits ten lines each way, in place, without a copy; and
-//! that crate's encoder keeps an overflow panic wherever overflow checks are on.
+//! A zero always ends a frame, so the receiver finds the next one whatever came before.
+//!
+//! COBS and CRC are written here: ten lines each, where the crates `cobs` and `crc` keep an overflow panic each in an
+//! image with overflow checks. (`postcard` does, too; the workspace's release profile switches its checks off.)
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use serde::{Deserialize, Serialize};
 
 /// Version of the protocol: framing, messages, record layout and setting ids together.
@@ -24,9 +24,6 @@ pub const MAX_MESSAGE: usize = MAX_FRAME - ENVELOPE - 2;
 /// Version, sequence number and CRC.
 const ENVELOPE: usize = 6;
 
-/// Python's `zlib.crc32`. Bit by bit: a frame is short, and a table costs a kilobyte of flash.
-const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
-
 /// Writes `message` as a frame; what is to be sent, terminator included. `None` if it is longer than [`MAX_MESSAGE`],
 /// which no message of [`message`](super::message) is.
 pub fn encode<'a>(
@@ -40,12 +37,38 @@ pub fn encode<'a>(
     let room = room.get_mut(..MAX_MESSAGE)?;
     let length = postcard::to_slice(message, room).ok()?.len();
     let end = length.checked_add(3)?;
-    let check = CRC.checksum(wire.get(1..end)?);
+    let check = crc32(wire.get(1..end)?);
     *wire.get_mut(end..)?.first_chunk_mut()? = check.to_le_bytes();
     let raw_end = end.checked_add(4)?;
     stuff(wire.get_mut(..raw_end)?);
     *wire.get_mut(raw_end)? = 0;
     wire.get(..=raw_end)
+}
+
+/// CRC-32 (ISO-HDLC), Python's `zlib.crc32`; four bits a step.
+fn crc32(bytes: &[u8]) -> u32 {
+    const STEP: [u32; 16] = {
+        let mut table = [0; 16];
+        let mut i = 0;
+        while i < 16 {
+            let mut rest = i as u32;
+            let mut bit = 0;
+            while bit < 4 {
+                rest = (rest >> 1) ^ (0xedb8_8320 * (rest & 1));
+                bit += 1;
+            }
+            table[i] = rest;
+            i += 1;
+        }
+        table
+    };
+    let mut crc = !0u32;
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        crc = (crc >> 4) ^ STEP[(crc & 15) as usize];
+        crc = (crc >> 4) ^ STEP[(crc & 15) as usize];
+    }
+    !crc
 }
 
 /// COBS in place: the first byte is the way to the first zero after it, and every zero becomes the way to the next.
@@ -66,14 +89,12 @@ fn stuff(bytes: &mut [u8]) {
 
 /// Undoes [`stuff`]; whether the ways lead to the end exactly.
 fn unstuff(bytes: &mut [u8]) -> bool {
+    // The first byte is a way that begins in front of it.
     let mut way = 1u8;
-    for (i, byte) in bytes.iter_mut().enumerate() {
+    for byte in bytes {
         way = way.saturating_sub(1);
         if way == 0 {
-            way = *byte;
-            if i > 0 {
-                *byte = 0;
-            }
+            way = core::mem::take(byte);
         }
     }
     way == 1
@@ -189,7 +210,7 @@ fn unpack(wire: &mut [u8]) -> Result<Frame<'_>, FrameError> {
         return Err(FrameError::Truncated);
     };
     let check = u32::from_le_bytes(*check);
-    if CRC.checksum(content) != check {
+    if crc32(content) != check {
         return Err(FrameError::Corrupt);
     }
     if *version != VERSION {

@@ -223,10 +223,14 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
             return Answer::Refused(Why::Role);
         }
         let mounted = self.robot.params().ring.mounts.len();
-        if readings.iter().any(|reading| reading.is_none()) {
-            return Answer::Refused(Why::Malformed);
+        let mut end = usize::from(first);
+        for reading in readings.iter() {
+            if reading.is_none() {
+                return Answer::Refused(Why::Malformed);
+            }
+            end = end.saturating_add(1);
         }
-        if usize::from(first).saturating_add(readings.iter().count()) > mounted {
+        if end > mounted {
             let most = narrow(mounted);
             return Answer::Refused(Why::TooMany { most });
         }
@@ -304,8 +308,10 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
             Answer::Refused(why) => say(ToHost::Refused { why }),
             Answer::Record => {
                 let record = self.record.as_ref().map_or(&[][..], |record| record);
-                for (part, bytes) in (0..).zip(record.chunks(PART_BYTES)) {
+                let mut part = 0u8;
+                for bytes in record.chunks(PART_BYTES) {
                     say(ToHost::RecordPart { part, bytes });
+                    part = part.saturating_add(1);
                 }
             }
         }
