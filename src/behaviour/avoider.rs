@@ -71,20 +71,14 @@ pub fn avoid(
         let sooner = distance < square(behind + other.radius);
         sooner && other.is_nearer(robot_radius, avoider.range)
     };
-    let mut way = mirror(direction).rotation();
-    // Every push goes to the right, so as many passes as obstacles reach the end.
+    // Every push goes to the right, past one obstacle for good: as many pushes as obstacles reach the end.
     for _ in 0..sensed.obstacles.len() {
-        let mut pushed = false;
-        for other in &sensed.obstacles {
-            if other.covers(way, grown) && matters(other) {
-                direction = mirror(other.unfeasible_edge(grown, side)) - EDGE;
-                way = mirror(direction).rotation();
-                pushed = true;
-            }
-        }
-        if !pushed {
+        let way = mirror(direction).rotation();
+        let blocks = |other: &&Obstacle| other.covers(way, grown) && matters(other);
+        let Some(other) = sensed.obstacles.iter().find(blocks) else {
             break;
-        }
+        };
+        direction = mirror(other.unfeasible_edge(grown, side)) - EDGE;
     }
     let turn = mirror(direction);
     let speed = i64::from(limits.speed.bits()).wrapping_mul(out.speed.to_bits().into()) >> 14;
