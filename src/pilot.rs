@@ -196,7 +196,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
             return Err(Why::Role);
         } else {
             self.core.begin(self.core.home)?;
-            self.core.arm()?;
+            self.core.arming.arm()?;
         }
         Ok(self.state())
     }
@@ -278,12 +278,6 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         self.ticked_us = Some(now_us);
         self.next_tick = record.tick.wrapping_add(1);
         self.record = Some(record::encode(record));
-    }
-
-    fn arm(&mut self) -> Result<(), Why> {
-        self.arming.arm()?;
-        self.ticked_us = None;
-        Ok(())
     }
 
     fn disarm(&mut self, cause: Cause) {

@@ -881,6 +881,11 @@ fn a_path_comes_piece_by_piece() {
             fault(PathFault::Gap { piece: 2 })
         };
         assert_eq!(desk.ask(pilot, &ToTarget::PathEnd), expected);
+        // Begun with the path before, not with this one.
+        let token = desk.ask(pilot, &ToTarget::Status).token();
+        let arm = ToTarget::Arm { token };
+        assert_eq!(desk.ask(pilot, &arm), Said::Refused(Why::NotBegun));
+        assert_eq!(desk.ask(pilot, &BEGIN) == Said::Ack, gaps);
     }
     let begin = ToTarget::PathBegin {
         form: PathForm::Segments,
@@ -1426,6 +1431,45 @@ fn a_plant_leaves_nothing_behind() {
         let said = bench.desk.ask(&mut bench.pilot, &ToTarget::Arm { token });
         assert!(matches!(said, Said::State { armed: true, .. }), "{said:?}");
     }
+}
+
+/// `Begin` says where a run begins, for the button, too.
+#[test]
+fn a_run_begins_where_begin_says() {
+    let mut bench = Bench::new();
+    for _ in 0..5 {
+        bench.clean();
+    }
+    bench.desk.ask(&mut bench.pilot, &ToTarget::Stop);
+    let there = ToTarget::Begin {
+        x: 1 << 16,
+        y: -2 << 16,
+        heading: 1 << 30,
+    };
+    assert_eq!(bench.desk.ask(&mut bench.pilot, &there), Said::Ack);
+    bench.recover();
+    let said = bench.period(|frames| frames);
+    assert!(
+        matches!(
+            said[0],
+            Said::State {
+                cause: Cause::Sequence,
+                ..
+            }
+        ),
+        "tick 5 of the last run"
+    );
+    bench.recover();
+    bench.tick = 0;
+    let said = bench.period(|frames| frames);
+    assert_eq!(said[0].clone().record().tick, 0);
+    bench.desk.hello(&mut bench.pilot, Role::Monitor);
+    assert_eq!(bench.pilot.button(bench.desk.now_us), Ok(State::Armed));
+    let (x, y) = (Metres::lit("1"), Metres::lit("-2"));
+    assert_eq!(
+        bench.pilot.robot().pose(),
+        Pose::new(Point::new(x, y), Angle::QUARTER)
+    );
 }
 
 /// Wheels that are pushed while the robot is disarmed are followed.

@@ -110,7 +110,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
             }
             ToTarget::PathEnd => self.path_end().into(),
             ToTarget::Arm { token } if token != self.arming.token() => Answer::Refused(Why::Token),
-            ToTarget::Arm { .. } => match self.arm() {
+            ToTarget::Arm { .. } => match self.arming.arm() {
                 Ok(()) => Answer::State,
                 Err(why) => Answer::Refused(why),
             },
