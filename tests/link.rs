@@ -3,7 +3,7 @@
 use fuzzypilot::fuzzy::{FiredRule, Grade};
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::link::frame::{self, Counters, Decoder, FrameError, MAX_FRAME, MAX_MESSAGE};
-use fuzzypilot::link::message::{MAX_READINGS, Readings, ToTarget};
+use fuzzypilot::link::message::{MAX_READINGS, PART_BYTES, Readings, ToTarget};
 use fuzzypilot::link::record::{self, RECORD_BYTES};
 use fuzzypilot::link::settings::{self, Format, SetError};
 use fuzzypilot::params::{
@@ -187,6 +187,143 @@ proptest! {
         let bytes: [u8; RECORD_BYTES] = bytes.concat().try_into().unwrap();
         if let Some(record) = record::decode(&bytes) {
             prop_assert_eq!(record::encode(&record), bytes);
+        }
+    }
+}
+
+/// What a field of the page's table holds, from the record itself.
+fn field(record: &TickRecord, name: &str) -> i64 {
+    let guidance = &record.guidance;
+    let trace = &record.trace;
+    let held = match record.decision {
+        Decision::Avoid { obstacle, .. } => obstacle,
+        _ => Obstacle::default(),
+    };
+    let rule = |rules: &[FiredRule]| {
+        let digit = name.find(|c: char| c.is_ascii_digit()).unwrap();
+        let place: usize = name[digit..=digit].parse().unwrap();
+        let rule = rules.get(place - 1).copied().unwrap_or_default();
+        match &name[digit + 1..] {
+            ".row" => i64::from(rule.row),
+            ".col" => i64::from(rule.col),
+            ".degree" => i64::from(rule.degree.bits()),
+            _ => panic!("unknown field {name}"),
+        }
+    };
+    i64::from(match name {
+        "tick" => return i64::from(record.tick),
+        "decision" => match record.decision {
+            Decision::Follow => 0,
+            Decision::Avoid { .. } => 1,
+            Decision::Stop(_) => 2,
+        },
+        "detail" => match record.decision {
+            Decision::Avoid {
+                side: Turn::Right, ..
+            } => 1,
+            Decision::Stop(StopReason::NoOdometry) => 1,
+            Decision::Stop(StopReason::PathEnd) => 2,
+            Decision::Stop(StopReason::PathMissed) => 3,
+            _ => 0,
+        },
+        "flags" => {
+            i32::from(guidance.at_end)
+                + 2 * i32::from(guidance.missed_end)
+                + 4 * i32::from(record.guarded)
+                + 8 * i32::from(record.drive_fault)
+        }
+        "controller" => match trace.controller {
+            Controller::None => 0,
+            Controller::Fine => 1,
+            Controller::Coarse => 2,
+        },
+        "held.x" => held.centre.x.bits(),
+        "held.y" => held.centre.y.bits(),
+        "held.radius" => held.radius.bits(),
+        "held.residual" => held.residual.bits(),
+        "pose.x" => record.pose.at.x.bits(),
+        "pose.y" => record.pose.at.y.bits(),
+        "pose.heading" => record.pose.heading.bits(),
+        "foot.x" => guidance.foot.x.bits(),
+        "foot.y" => guidance.foot.y.bits(),
+        "cross_track" => guidance.cross_track.bits(),
+        "distance" => guidance.distance.bits(),
+        "tangent" => guidance.tangent.bits(),
+        "curvature" => guidance.curvature.bits(),
+        "heading_error" => guidance.heading_error.bits(),
+        "progress" => guidance.progress.bits(),
+        "remaining" => guidance.remaining.bits(),
+        "speed_limit" => guidance.speed_limit.bits(),
+        "laps" => guidance.laps.into(),
+        "obstacles" => record.obstacles.into(),
+        "valid_ranges" => record.valid_ranges.into(),
+        "nearest" => record.nearest.bits(),
+        "held.echoes" => held.echoes.into(),
+        "rules" => trace.rules.len() as i32,
+        "speed_rules" => trace.speed_rules.len() as i32,
+        "reserved" => 0,
+        "distance_input" => trace.distance_input,
+        "angle_input" => trace.angle_input,
+        "speed_output" => trace.speed_output.into(),
+        "deflection_output" => trace.deflection_output.into(),
+        "desired.linear" => record.desired.linear.bits(),
+        "desired.angular" => record.desired.angular.bits(),
+        "twist.linear" => record.twist.linear.bits(),
+        "twist.angular" => record.twist.angular.bits(),
+        "wheels.left" => record.wheels.left.bits(),
+        "wheels.right" => record.wheels.right.bits(),
+        name if name.starts_with("rule") => return rule(&trace.rules),
+        _ => return rule(&trace.speed_rules),
+    })
+}
+
+/// The page's table: offset, length, whether signed, field.
+fn record_table() -> Vec<(usize, usize, bool, String)> {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/link.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let table = page.split("\n## Records\n").nth(1).unwrap();
+    let table = table.split("\n## ").next().unwrap();
+    let mut rows = Vec::new();
+    for line in table.lines() {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let [_, offset, of, name, ..] = cells[..] else {
+            continue;
+        };
+        let Ok(offset) = offset.parse() else { continue };
+        let of = of.trim_matches('`');
+        let bits: usize = of[1..].parse().unwrap();
+        rows.push((offset, bits / 8, of.starts_with('i'), name.to_owned()));
+    }
+    rows
+}
+
+#[test]
+fn the_page_has_every_byte_of_a_record_once() {
+    let mut next = 0;
+    for (offset, length, _, name) in record_table() {
+        assert_eq!(offset, next, "{name}");
+        assert_eq!(offset % length, 0, "{name} is not aligned");
+        next += length;
+    }
+    assert_eq!(next, RECORD_BYTES);
+    assert_eq!(RECORD_BYTES, 3 * PART_BYTES);
+}
+
+proptest! {
+    #![proptest_config(config(500))]
+
+    #[test]
+    fn records_are_laid_out_as_the_page_says(record in tick_record()) {
+        let bytes = record::encode(&record);
+        for (offset, length, signed, name) in record_table() {
+            let mut wide = [0; 8];
+            wide[..length].copy_from_slice(&bytes[offset..offset + length]);
+            let mut value = i64::from_le_bytes(wide);
+            let top = 1 << (8 * length - 1);
+            if signed && value >= top {
+                value -= 2 * top;
+            }
+            prop_assert_eq!(value, field(&record, &name), "{}", name);
         }
     }
 }
