@@ -16,7 +16,8 @@
 //!
 //! [`tick::Robot::tick`] is that line in code. Stages never see each other; they pass the records of [`signals`].
 //! Settings live in [`params`] (start from [`presets`]), hardware behind the traits of [`ports`]. [`fuzzy`] knows
-//! nothing of robots and can be used alone.
+//! nothing of robots and can be used alone. Around the tick, [`pilot`] is the application that every board runs, and
+//! [`link`] the wire to a desktop.
 //!
 //! # Frames, signs, units
 //!

@@ -23,16 +23,23 @@ pub struct Localiser {
 
 impl Localiser {
     /// Starts at `pose`.
-    pub fn new(body: &Body, pose: Pose) -> Self {
+    pub const fn new(body: &Body, pose: Pose) -> Self {
         // metres_per_count / (2π · track) turns a count; × 2^48. Numerator m·2^32 · 2^32, below 2^62; denominator m·2^16.
         const TURN: u64 = 683_565_276; // 2^32 / 2π
-        let numerator = u64::from(body.metres_per_count.to_bits()).wrapping_mul(TURN);
-        let track = body.track.max(Metres::from_bits(1)).bits().unsigned_abs();
+        let numerator = (body.metres_per_count.to_bits() as u64).wrapping_mul(TURN);
+        let track = match body.track.bits() {
+            1.. => body.track.bits().unsigned_abs(),
+            _ => 1,
+        };
+        let turn_per_count = match divide(numerator, track) {
+            Some(turn) => turn as i64,
+            None => 0,
+        };
         Self {
-            x: i64::from(pose.at.x.bits()) << 16,
-            y: i64::from(pose.at.y.bits()) << 16,
-            heading: i64::from(pose.heading.bits()) << 16,
-            turn_per_count: divide(numerator, track).unwrap_or(0) as i64,
+            x: (pose.at.x.bits() as i64) << 16,
+            y: (pose.at.y.bits() as i64) << 16,
+            heading: (pose.heading.bits() as i64) << 16,
+            turn_per_count,
         }
     }
 

@@ -79,8 +79,8 @@ struct Upload {
 
 impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMENTS, POINTS> {
     /// A robot that stands at `home` (world), disarmed, without a path. Unsound settings are refused when it is to be
-    /// armed.
-    pub fn new(params: Params<N>, home: Pose) -> Self {
+    /// armed. It may be a `static`'s initial value, so that several kilobytes need not pass through the stack.
+    pub const fn new(params: Params<N>, home: Pose) -> Self {
         Self {
             decoder: Decoder::new(),
             counters: Counters::new(),
@@ -138,10 +138,10 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
         self.core.path.copy(path)
     }
 
-    /// Takes over settings; disarms.
-    pub fn set_params(&mut self, params: &Params<N>) {
+    /// Changes settings in place; disarms.
+    pub fn change_params(&mut self, change: impl FnOnce(&mut Params<N>)) {
         self.core.change();
-        self.core.robot.params_mut().clone_from(params);
+        change(self.core.robot.params_mut());
     }
 
     /// Tells what a desktop may ask for: the deepest stack so far, in bytes.

@@ -51,7 +51,7 @@ const FOLLOWER: Follower = Follower {
 };
 
 /// A small differential robot: 0.2 m across, 1 m/s, 20 Hz with 50 ms latency, `N` beams of 2 m all round.
-pub fn small_robot<const N: usize>() -> Params<N> {
+pub const fn small_robot<const N: usize>() -> Params<N> {
     Params {
         body: Body {
             radius: m!("0.10"),
@@ -160,21 +160,21 @@ pub fn chapter_robot<const N: usize>() -> Params<N> {
     }
 }
 
+/// A beam from the robot's centre straight ahead.
+const MIDDLE: Mount = Mount {
+    pose: Pose::new(Point::new(Metres::ZERO, Metres::ZERO), Angle::ZERO),
+    width: Angle::ZERO,
+};
+
 /// `N` beams at the robot's centre, evenly all round, the first one looking back.
-fn all_round<const N: usize>() -> Vec<Mount, N> {
-    let mount = |i: usize| {
-        let turn = ((i as u64) << 32) / (N.max(1) as u64);
-        let heading = Angle::HALF + Angle::from_bits(turn as u32 as i32);
-        Mount {
-            pose: Pose::new(Point::default(), heading),
-            width: Angle::ZERO,
-        }
-    };
-    let mut mounts = Vec::new();
-    for i in 0..N {
-        if mounts.push(mount(i)).is_err() {
-            break;
-        }
+const fn all_round<const N: usize>() -> Vec<Mount, N> {
+    let mut mounts = [MIDDLE; N];
+    let mut i = 0;
+    while i < N {
+        let turn = ((i as u64) << 32) / (N as u64);
+        mounts[i].pose.heading =
+            Angle::from_bits((turn as u32 as i32).wrapping_add(Angle::HALF.bits()));
+        i += 1;
     }
-    mounts
+    Vec::from_array(mounts)
 }

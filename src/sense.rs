@@ -19,6 +19,11 @@ pub struct Odometer {
 }
 
 impl Odometer {
+    /// Before the first reading.
+    pub const fn new() -> Self {
+        Self { last: None }
+    }
+
     /// Travel since the last good reading; the first reading is the zero.
     pub fn travel(&mut self, reading: Result<WheelCounts, Fault>) -> Travel {
         match reading {

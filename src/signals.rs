@@ -98,6 +98,19 @@ pub struct Sensed {
     pub nearest: Metres,
 }
 
+impl Sensed {
+    /// Nothing looked at yet.
+    pub const fn new() -> Self {
+        Self {
+            echoes: Vec::new(),
+            spreads: Vec::new(),
+            obstacles: Vec::new(),
+            valid: 0,
+            nearest: Metres::ZERO,
+        }
+    }
+}
+
 /// Wheel travel since the last good reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -193,6 +206,14 @@ pub struct Twist {
     pub linear: MetresPerSecond,
     /// Yaw rate, counter-clockwise positive.
     pub angular: RadiansPerSecond,
+}
+
+impl Twist {
+    /// Standing still.
+    pub const REST: Self = Self {
+        linear: MetresPerSecond::ZERO,
+        angular: RadiansPerSecond::ZERO,
+    };
 }
 
 /// Wheel speeds.

@@ -61,15 +61,7 @@ pub struct SupervisorState {
 
 impl Default for SupervisorState {
     fn default() -> Self {
-        Self {
-            mode: Mode::Follow,
-            // The first obstacle may stand right at the start: no dwell before it.
-            dwelt: u16::MAX,
-            blind: 0,
-            lost: 0,
-            healthy: 0,
-            held: None,
-        }
+        Self::new()
     }
 }
 
@@ -89,6 +81,19 @@ pub struct Situation<'a> {
 }
 
 impl SupervisorState {
+    /// At the start of a path.
+    pub const fn new() -> Self {
+        Self {
+            mode: Mode::Follow,
+            // The first obstacle may stand right at the start: no dwell before it.
+            dwelt: u16::MAX,
+            blind: 0,
+            lost: 0,
+            healthy: 0,
+            held: None,
+        }
+    }
+
     /// Current mode.
     pub fn mode(&self) -> Mode {
         self.mode

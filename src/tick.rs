@@ -30,16 +30,16 @@ pub struct Robot<const N: usize> {
 
 impl<const N: usize> Robot<N> {
     /// A robot at rest at `start` (world frame), at the beginning of its path. Pass [`Params::checked`] settings.
-    pub fn new(params: Params<N>, start: Pose) -> Self {
+    pub const fn new(params: Params<N>, start: Pose) -> Self {
         Self {
             localiser: Localiser::new(&params.body, start),
             params,
             readings: [RangeReading::NEVER_SEEN; N],
-            sensed: Sensed::default(),
-            odometer: Odometer::default(),
-            cursor: Cursor::default(),
-            supervisor: SupervisorState::default(),
-            last: Twist::default(),
+            sensed: Sensed::new(),
+            odometer: Odometer::new(),
+            cursor: Cursor::new(),
+            supervisor: SupervisorState::new(),
+            last: Twist::REST,
             tick: 0,
         }
     }

@@ -19,6 +19,7 @@ use fuzzypilot::presets;
 use fuzzypilot::signals::TickRecord;
 use fuzzypilot::tick::Robot;
 use fuzzypilot::units::{Angle, Metres, MetresPerSecond, Seconds};
+use std::sync::Mutex;
 
 const RING: usize = 8;
 type Flown = Pilot<RING, 4, 6>;
@@ -329,6 +330,16 @@ impl Board {
     }
 }
 
+/// A board keeps it in a `static`, built while it compiles.
+#[test]
+fn a_pilot_may_be_a_static() {
+    const HOME: Pose = Pose::new(Point::new(Metres::ZERO, Metres::ZERO), Angle::ZERO);
+    static PILOT: Mutex<Flown> = Mutex::new(Pilot::new(presets::small_robot(), HOME));
+    let pilot = PILOT.lock().unwrap();
+    assert_eq!(disarmed(&pilot), Cause::Boot);
+    assert_eq!(pilot.robot().params(), &presets::small_robot());
+}
+
 #[test]
 fn a_robot_rests_until_its_button_is_pressed() {
     let mut board = Board::new();
@@ -374,9 +385,7 @@ fn without_path_or_with_unsound_settings_nothing_is_armed() {
     pilot
         .set_path(&Path::segments(&line(), false).unwrap())
         .unwrap();
-    let mut params = presets::small_robot::<RING>();
-    params.guard.braking = I16F16::ZERO;
-    pilot.set_params(&params);
+    pilot.change_params(|params| params.guard.braking = I16F16::ZERO);
     assert_eq!(pilot.button(0), Err(Why::Setting { id: 81 }));
     assert_eq!(disarmed(&pilot), Cause::Boot);
 }
@@ -385,7 +394,7 @@ fn without_path_or_with_unsound_settings_nothing_is_armed() {
 fn new_settings_or_a_new_path_disarm() {
     let mut board = Board::new();
     board.pilot.button(board.now_us).unwrap();
-    board.pilot.set_params(&presets::small_robot());
+    board.pilot.change_params(|_| {});
     assert_eq!(disarmed(&board.pilot), Cause::SettingsChanged);
     board.pilot.button(board.now_us).unwrap();
     board
@@ -400,7 +409,7 @@ fn new_settings_or_a_new_path_disarm() {
         desk.fly(pilot, Role::Monitor);
         desk.ask(pilot, &ToTarget::Stop);
         match change {
-            0 => pilot.set_params(&presets::small_robot()),
+            0 => pilot.change_params(|_| {}),
             _ => pilot
                 .set_path(&Path::segments(&line(), false).unwrap())
                 .unwrap(),

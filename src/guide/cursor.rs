@@ -41,6 +41,16 @@ pub struct Fix {
 }
 
 impl Cursor {
+    /// At the start of a path.
+    pub const fn new() -> Self {
+        Self {
+            piece: 0,
+            along: Metres::ZERO,
+            base: Metres::ZERO,
+            laps: 0,
+        }
+    }
+
     /// Moves on to the place of the path nearest to `place`, at most `reach` metres ahead and never back.
     pub fn advance(&mut self, path: &Path<'_>, place: Point, reach: Metres) -> Fix {
         let mut budget = reach.max(Metres::ZERO);
