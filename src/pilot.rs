@@ -56,8 +56,9 @@ struct Core<const N: usize, const SEGMENTS: usize, const POINTS: usize> {
     arming: Arming,
     session: Session,
     scan: Scan<N>,
-    /// The last tick's record, encoded.
-    record: Option<[u8; RECORD_BYTES]>,
+    /// The last tick's record, encoded, if there was a tick.
+    record: [u8; RECORD_BYTES],
+    recorded: bool,
     /// Number of the robot's next tick.
     next_tick: u32,
     /// When the last tick was, since arming.
@@ -92,7 +93,8 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
                 arming: Arming::new(),
                 session: Session::new(),
                 scan: Scan::new(),
-                record: None,
+                record: [0; RECORD_BYTES],
+                recorded: false,
                 next_tick: 0,
                 ticked_us: None,
                 now_us: None,
@@ -277,7 +279,8 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
     fn ticked(&mut self, now_us: u32, record: &TickRecord) {
         self.ticked_us = Some(now_us);
         self.next_tick = record.tick.wrapping_add(1);
-        self.record = Some(record::encode(record));
+        record::encode_into(record, &mut self.record);
+        self.recorded = true;
     }
 
     fn disarm(&mut self, cause: Cause) {
@@ -324,7 +327,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
     fn come_home(&mut self) {
         self.arming.begun = false;
         self.scan.clear();
-        self.record = None;
+        self.recorded = false;
         // With unsound settings nothing is forgotten, and nothing can be armed either.
         let _ = self.robot.restart(self.home);
         self.next_tick = 0;

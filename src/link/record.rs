@@ -25,7 +25,13 @@ const DRIVE_FAULT: u8 = 8;
 /// The record's bytes.
 pub fn encode(record: &TickRecord) -> [u8; RECORD_BYTES] {
     let mut bytes = [0; RECORD_BYTES];
-    let mut to = Writer(&mut bytes);
+    encode_into(record, &mut bytes);
+    bytes
+}
+
+/// Writes the record's bytes where they are to stay.
+pub fn encode_into(record: &TickRecord, bytes: &mut [u8; RECORD_BYTES]) {
+    let mut to = Writer(bytes);
     let (decision, detail, held) = match record.decision {
         Decision::Follow => (0, 0, Obstacle::default()),
         Decision::Avoid { side, obstacle } => (1, side_tag(side), obstacle),
@@ -78,7 +84,6 @@ pub fn encode(record: &TickRecord) -> [u8; RECORD_BYTES] {
     to.twist(record.twist);
     to.word(record.wheels.left.bits());
     to.word(record.wheels.right.bits());
-    bytes
 }
 
 /// The record behind the bytes; `None` if no record encodes to them.

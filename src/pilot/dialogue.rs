@@ -129,7 +129,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
                 scan,
                 counts,
             } => self.inputs(tick, time_us, scan, counts),
-            ToTarget::Record if self.record.is_some() => Answer::Record,
+            ToTarget::Record if self.recorded => Answer::Record,
             ToTarget::Record => Answer::Refused(Why::NoRecord),
         }
     }
@@ -307,9 +307,8 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
             Answer::Ack => say(ToHost::Ack),
             Answer::Refused(why) => say(ToHost::Refused { why }),
             Answer::Record => {
-                let record = self.record.as_ref().map_or(&[][..], |record| record);
                 let mut part = 0u8;
-                for bytes in record.chunks(PART_BYTES) {
+                for bytes in self.record.chunks(PART_BYTES) {
                     say(ToHost::RecordPart { part, bytes });
                     part = part.saturating_add(1);
                 }
