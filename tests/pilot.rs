@@ -64,6 +64,7 @@ enum Said {
         cause: Cause,
         token: u32,
         tick: u32,
+        uptime_ms: u32,
     },
     Value {
         id: u16,
@@ -160,12 +161,14 @@ impl Desk {
                     cause,
                     token,
                     tick,
+                    uptime_ms,
                     ..
                 } => Said::State {
                     armed,
                     cause,
                     token,
                     tick,
+                    uptime_ms,
                 },
                 ToHost::Value { id, value } => Said::Value { id, value },
                 ToHost::Ack => Said::Ack,
@@ -1545,6 +1548,60 @@ fn a_ring_larger_than_mounted_is_refused() {
     }
 }
 
+/// A message of any bytes.
+struct Raw<'a>(&'a [u8]);
+
+impl serde::Serialize for Raw<'_> {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeTuple;
+        // Of a tuple, postcard writes the elements alone.
+        let mut tuple = to.serialize_tuple(self.0.len())?;
+        for byte in self.0 {
+            tuple.serialize_element(byte)?;
+        }
+        tuple.end()
+    }
+}
+
+#[test]
+fn what_is_not_understood_is_refused() {
+    let mut bench = Bench::new();
+    for message in [
+        // No such message; a status with a byte too many; a reading with an unknown tag, after a sound one.
+        &[15][..],
+        &[1, 0],
+        &[12, 1, 0, 4, 1, 0, 3, 1],
+    ] {
+        bench.desk.sequence = bench.desk.sequence.wrapping_add(1);
+        let mut wire = [0; MAX_FRAME];
+        let frame = frame::encode(bench.desk.sequence, &Raw(message), &mut wire);
+        let said = bench.send(&[frame.unwrap().to_vec()]);
+        assert_eq!(said, [Said::Refused(Why::Malformed)], "{message:?}");
+    }
+    // The session goes on.
+    bench.clean();
+}
+
+#[test]
+fn uptime_survives_wrapping_and_late_stamps() {
+    let mut pilot = new_pilot();
+    let mut desk = Desk::new();
+    for (now_us, uptime) in [
+        (u32::MAX - 1_999, 0),
+        (3_000, 5),
+        (2_000, 5),
+        (4_000, 6),
+        (4_000 + (1 << 31) - 1, 2_147_489),
+    ] {
+        desk.now_us = now_us;
+        let said = desk.ask(&mut pilot, &ToTarget::Status);
+        assert!(
+            matches!(said, Said::State { uptime_ms, .. } if uptime_ms == uptime),
+            "{said:?}"
+        );
+    }
+}
+
 // ---- hostile frames ----
 
 /// Frames of honest sessions, to be recorded, changed and played back.
@@ -1681,21 +1738,9 @@ fn any_sound_message_is_survived() {
         if let Some(tag) = message.first_mut() {
             *tag %= 16;
         }
-        // A tuple of bytes is written as they are.
-        struct Raw(Vec<u8>);
-        impl serde::Serialize for Raw {
-            fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-                use serde::ser::SerializeTuple;
-                let mut tuple = to.serialize_tuple(self.0.len())?;
-                for byte in &self.0 {
-                    tuple.serialize_element(byte)?;
-                }
-                tuple.end()
-            }
-        }
         desk.sequence = desk.sequence.wrapping_add(1);
         let mut wire = [0; MAX_FRAME];
-        let frame = frame::encode(desk.sequence, &Raw(message), &mut wire)
+        let frame = frame::encode(desk.sequence, &Raw(&message), &mut wire)
             .unwrap()
             .to_vec();
         desk.now_us = desk.now_us.wrapping_add(1_000);
