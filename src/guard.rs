@@ -27,14 +27,11 @@ pub fn guard(
     let reaction = period + latency;
     let reach = radius + params.margin;
     let mut free = Metres::MAX;
-    let unknown = core::iter::repeat(&Metres::ZERO);
-    for (echo, spread) in sensed
-        .echoes
-        .iter()
-        .zip(sensed.spreads.iter().chain(unknown))
-    {
+    let mut spreads = sensed.spreads.iter();
+    for echo in &sensed.echoes {
+        let spread = spreads.next().copied().unwrap_or_default();
         // The place nearest to the corridor's middle that the echo may come from.
-        let beside = (echo.y.abs() - *spread).max(Metres::ZERO);
+        let beside = (echo.y.abs() - spread).max(Metres::ZERO);
         // Nearer than its x less the whole reach it cannot be: most echoes need no root.
         if echo.x > Metres::ZERO && beside < reach && echo.x - reach < free {
             free = free.min((echo.x - leg(reach, beside)).max(Metres::ZERO));

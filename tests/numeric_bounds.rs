@@ -382,7 +382,7 @@ fn arc(centre: (f64, f64), radius: f64, facing: f64, span: f64, n: usize) -> Vec
 
 fn fit(points: &[(f64, f64)]) -> Option<CircleFit> {
     let points: Vec<Point> = points.iter().map(|&(x, y)| point(x, y)).collect();
-    fit_circle(points.iter().copied())
+    fit_circle(&points)
 }
 
 /// Worst relative error of the radius, and of the centre's place, over circles of `radius` seen on arcs of `span`.
@@ -491,16 +491,13 @@ fn lines_and_coincident_points_have_no_circle() {
             }
         }
         let place = point(lcg.between(-9.0, 9.0), lcg.between(-9.0, 9.0));
-        assert_eq!(fit_circle(vec![place; n].into_iter()), None);
+        assert_eq!(fit_circle(&vec![place; n]), None);
         let mut two = vec![place; n];
         two[0] = place + point(0.3, 0.1);
-        assert_eq!(fit_circle(two.iter().copied()), None);
+        assert_eq!(fit_circle(&two), None);
     }
-    assert_eq!(fit_circle([].into_iter()), None);
-    assert_eq!(
-        fit_circle([point(1.0, 0.0), point(0.0, 1.0)].into_iter()),
-        None
-    );
+    assert_eq!(fit_circle(&[]), None);
+    assert_eq!(fit_circle(&[point(1.0, 0.0), point(0.0, 1.0)]), None);
     let many: Vec<_> = arc((0.0, 0.0), 1.0, 0.0, 300.0, 65);
     assert_eq!(fit(&many), None);
     assert!(fit(&many[..64]).is_some());
@@ -540,7 +537,7 @@ proptest! {
                 p.x = Metres::from_bits(bits);
             }
         }
-        if let Some(fit) = fit_circle(points.iter().copied()) {
+        if let Some(fit) = fit_circle(&points) {
             prop_assert!((3..=64).contains(&points.len()));
             prop_assert!(fit.radius >= Metres::ZERO && fit.residual >= Metres::ZERO);
         }

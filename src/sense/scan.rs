@@ -94,7 +94,10 @@ pub fn sense_ranges<const N: usize>(
     match (open, first) {
         // The last run goes on in the first: one obstacle.
         (Some(last), Some(first)) if near(last.last, first.first) => {
+            turn_round(&mut sensed.echoes, last.start);
+            turn_round(&mut sensed.spreads, last.start);
             let whole = Run {
+                start: 0,
                 count: last.count.saturating_add(first.count),
                 last: first.last,
                 nearest: last.nearest.min(first.nearest),
@@ -111,10 +114,19 @@ pub fn sense_ranges<const N: usize>(
     }
 }
 
+/// Brings what begins at `start` to the front, the order kept all round: by three reversals.
+fn turn_round<T>(ring: &mut [T], start: usize) {
+    if let Some((head, tail)) = ring.split_at_mut_checked(start) {
+        head.reverse();
+        tail.reverse();
+        ring.reverse();
+    }
+}
+
 /// Consecutive echoes of one obstacle.
 #[derive(Clone, Copy)]
 struct Run {
-    /// Place of the first among the echoes; a run may go on past their end, from the beginning.
+    /// Place of the first among the echoes.
     start: usize,
     count: usize,
     /// It begins at the first sensor.
@@ -127,17 +139,6 @@ struct Run {
     nearest: Metres,
     /// Largest spread.
     spread: Metres,
-}
-
-impl Run {
-    /// The echoes, in order.
-    fn points<'a>(&self, echoes: &'a [Point]) -> impl Iterator<Item = Point> + Clone + use<'a> {
-        let end = self.start.saturating_add(self.count);
-        let head = echoes.get(self.start..end.min(echoes.len()));
-        let tail = echoes.get(..end.saturating_sub(echoes.len()));
-        let (head, tail) = (head.unwrap_or_default(), tail.unwrap_or_default());
-        head.iter().chain(tail).copied()
-    }
 }
 
 /// The obstacles found so far, the one with the nearest echo first.
@@ -220,8 +221,9 @@ fn circle_of<const N: usize>(
     let spaces = (run.count as i32).saturating_sub(1);
     let missed = Metres::from_bits(width.bits().checked_div(spaces).unwrap_or(0) >> 1);
     let half_width = Metres::from_bits(width.bits() >> 1) + missed.max(run.spread);
+    let end = run.start.saturating_add(run.count);
     if run.count >= ENOUGH
-        && let Some(fit) = fit_circle(run.points(echoes))
+        && let Some(fit) = echoes.get(run.start..end).and_then(fit_circle)
         && fit.radius >= least
         && fit.radius <= most
         && sagitta(half_width, fit.radius) >= ring.residual
