@@ -3,8 +3,28 @@
 //! On the implementer's side of each trait: never block longer than a small share of the control period, never
 //! panic, and report trouble as data. On the caller's side: every method is called exactly once a tick, encoders
 //! first, ranges next, wheels last, and a failure in one never skips the others.
+//!
+//! # Drivers
+//!
+//! Adapters over [`embedded_hal`] 1.0 for usual parts. None blocks, none panics; every error is a value.
+//!
+//! | module | part | what to call |
+//! |---|---|---|
+//! | [`bridge`] | H-bridges: PWM + two pins (TB6612FNG, L298N), two PWMs (DRV8833, L9110) | – |
+//! | [`wheel_loop`] | [`WheelDrive`]: speed loop over two motors | `step` at 50 to 1000 Hz |
+//! | [`quadrature`] | [`WheelEncoders`]: hardware counters of 16 or 32 bits, or a decoder in software | – |
+//!
+//! The drivers' clock is `now_us`: microseconds of any free-running counter, 32 bits, wrapping (every 71.6 minutes).
+//! All of them get the same one, and each is called at least every half hour.
+
+pub mod bridge;
+mod micros;
+pub mod quadrature;
+pub mod wheel_loop;
 
 use crate::units::{Metres, MetresPerSecond, Seconds};
+use core::convert::Infallible;
+use embedded_hal::digital;
 
 /// A wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +127,7 @@ pub enum Fault {
     NeverSeen,
     /// No answer in time.
     Timeout,
-    /// The bus or the pin reported an error.
+    /// The bus, the pin or the sensor itself reported an error.
     Bus,
     /// The value is outside what the sensor can measure.
     OutOfRange,
@@ -124,4 +144,22 @@ pub struct Ports<D, E, R> {
     pub encoders: E,
     /// Range sensors.
     pub ranges: R,
+}
+
+/// An output that is not connected: stands for an optional pin that the robot does not have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NoPin;
+
+impl digital::ErrorType for NoPin {
+    type Error = Infallible;
+}
+
+impl digital::OutputPin for NoPin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
 }
