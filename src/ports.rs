@@ -13,13 +13,22 @@
 //! | [`bridge`] | H-bridges: PWM + two pins (TB6612FNG, L298N), two PWMs (DRV8833, L9110) | – |
 //! | [`wheel_loop`] | [`WheelDrive`]: speed loop over two motors | `step` at 50 to 1000 Hz |
 //! | [`quadrature`] | [`WheelEncoders`]: hardware counters of 16 or 32 bits, or a decoder in software | – |
+//! | [`echo`] | HC-SR04 and its like, several in turn | `poll` every 0.1 to 2 ms, `edge` from the pin's interrupt |
+//! | [`time_of_flight`] | VL53L0X, several on one bus | `poll` every 1 to 5 ms |
+//! | [`analog`] | Sharp GP2Y0A21 and its like | `read` between ticks |
+//! | [`ring`] | [`RangeSensors`]: the latest reading of each of these, with its age | `post` what they return, `at` before the tick |
 //!
 //! The drivers' clock is `now_us`: microseconds of any free-running counter, 32 bits, wrapping (every 71.6 minutes).
 //! All of them get the same one, and each is called at least every half hour.
 
+pub mod analog;
 pub mod bridge;
+pub mod echo;
 mod micros;
 pub mod quadrature;
+pub mod ring;
+mod sound;
+pub mod time_of_flight;
 pub mod wheel_loop;
 
 use crate::units::{Metres, MetresPerSecond, Seconds};

@@ -1,4 +1,5 @@
-//! Wrong rule bases do not compile: every file of `compile_fail/` is one mistake, its message beside it.
+//! Wrong rule bases and distance tables do not compile: every file of `compile_fail/` is one mistake, its message
+//! beside it.
 
 #[test]
 fn wrong_tables_do_not_compile() {

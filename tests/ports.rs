@@ -1,10 +1,18 @@
 //! The drivers over embedded-hal: each against its part, mocked or modelled. What a robot builder relies on: commands
 //! reach the pins, readings arrive with their age, every failure is a reading with its cause, and nothing waits.
 
+#[path = "ports/analog.rs"]
+mod analog;
 #[path = "ports/bridge.rs"]
 mod bridge;
+#[path = "ports/echo.rs"]
+mod echo;
 #[path = "ports/quadrature.rs"]
 mod quadrature;
+#[path = "ports/ring.rs"]
+mod ring;
+#[path = "ports/time_of_flight.rs"]
+mod time_of_flight;
 #[path = "ports/wheel_loop.rs"]
 mod wheel_loop;
 
