@@ -1,6 +1,7 @@
 //! Analog distance sensors: voltage to distance by a table, in integers.
 
 use super::{Fault, Range};
+use crate::integer::ratio;
 use crate::units::Metres;
 
 /// An analog input: embedded-hal 1.0 has no trait for it.
@@ -67,11 +68,10 @@ impl<const N: usize> DistanceTable<N> {
             if let &[(v_near, near), (v_far, far)] = pair
                 && seen >= turned(v_far)
             {
-                let below = i64::from(turned(v_near)).wrapping_sub(seen.into());
-                let drop = i64::from(v_near.abs_diff(v_far));
-                let step = i64::from(bits(far)).wrapping_sub(bits(near).into());
-                let on = step.wrapping_mul(below).checked_div(drop).unwrap_or(0);
-                return Range::Echo(Metres::from_bits(bits(near).wrapping_add(on as i32)));
+                let below = i32::from(turned(v_near)).wrapping_sub(seen.into());
+                let step = bits(far).wrapping_sub(bits(near));
+                let on = ratio(step, below, v_near.abs_diff(v_far).into());
+                return Range::Echo(Metres::from_bits(bits(near).wrapping_add(on)));
             }
         }
         Range::Clear

@@ -24,8 +24,9 @@ pub use super::sound::speed_of_sound;
 use super::micros::{micros, since};
 use super::ring::Sample;
 use super::{Fault, Range};
+use crate::integer::{quotient, saturate};
 use crate::params::ParamError;
-use crate::units::{Metres, MetresPerSecond, Seconds, saturate};
+use crate::units::{Metres, MetresPerSecond, Seconds};
 use embedded_hal::digital::OutputPin;
 
 /// Timing of an [`EchoRing`]. Start from [`HC_SR04`].
@@ -259,7 +260,7 @@ impl Timing {
         check(duration(settings.spacing), "echo.spacing", "1 ms to 1 s")?;
         check(duration(settings.rise), "echo.rise", "1 ms to 1 s")?;
         // Half of m/s · 2^16 · 2^16 / 10^6.
-        let reach = (i64::from(settings.sound.bits()) << 16) / 2_000_000;
+        let reach = quotient(i64::from(settings.sound.bits()) << 16, 2_000_000).unwrap_or(0);
         let timing = Self {
             reach,
             min_range: settings.min_range,

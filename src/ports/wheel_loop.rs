@@ -34,8 +34,9 @@
 use super::bridge::{Bridge, BridgeError, Effort, Motor, MotorCommand};
 use super::micros::{micros, since};
 use super::{Fault, NoPin, Side, WheelCounts, WheelDrive};
+use crate::integer::{quotient, saturate};
 use crate::params::ParamError;
-use crate::units::{MetresPerSecond, Seconds, saturate};
+use crate::units::{MetresPerSecond, Seconds};
 use embedded_hal::digital::OutputPin;
 use fixed::types::{I16F16, U0F32};
 
@@ -224,7 +225,8 @@ impl SpeedLoop {
         let of = |gain: I16F16, speed: MetresPerSecond| {
             i64::from(gain.to_bits()).saturating_mul(speed.bits().into())
         };
-        let most = i64::from(limit.bits().unsigned_abs()).saturating_mul(ONE) / 32_767;
+        // Below 2^31.
+        let most = i64::from(u32::from(limit.bits().unsigned_abs()).wrapping_mul(1 << 16) / 32_767);
         let error = measured.map_or(MetresPerSecond::ZERO, |measured| wanted - measured);
         let forward = i64::from(gains.static_effort.to_bits())
             .saturating_mul(direction)
@@ -448,11 +450,11 @@ impl<L: Motor, R: Motor, S: OutputPin> WheelLoop<L, R, S> {
             now.right.wrapping_sub(last.right),
         ];
         self.counted = Some((now_us, now));
-        let time = since(now_us, last_us);
+        let time = i32::try_from(since(now_us, last_us)).unwrap_or(i32::MAX);
         for (wheel, moved) in self.wheels.iter_mut().zip(moved) {
             let travel = self.travel.saturating_mul(moved.into());
             // Twice at the same time: the speed stays.
-            if let Some(speed) = travel.checked_div(time.into()) {
+            if let Some(speed) = quotient(travel, time) {
                 wheel.speed = MetresPerSecond::from_bits(saturate(speed));
             }
             let its_way = if wheel.effort < Effort::ZERO {
