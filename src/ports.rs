@@ -18,6 +18,30 @@
 //! | [`analog`] | Sharp GP2Y0A21 and its like | `read` between ticks |
 //! | [`ring`] | [`RangeSensors`]: the latest reading of each of these, with its age | `post` what they return, `at` before the tick |
 //!
+//! A robot on them has two rates, the wheel loop's and the tick's:
+//!
+//! ```
+//! # use fuzzypilot::{geometry::Pose, guide::Path, ports::{bridge::Motor, quadrature::QuadratureCounter, ring::Latest}};
+//! use fuzzypilot::{ports::*, signals::TickRecord, tick::Robot};
+//! use fuzzypilot::ports::{quadrature::QuadratureEncoders, wheel_loop::WheelLoop};
+//!
+//! # struct Machine<M: Motor, C: QuadratureCounter> {
+//! #     robot: Robot<4>,
+//! #     ports: Ports<WheelLoop<M, M>, QuadratureEncoders<C, C>, Latest<4>>,
+//! # }
+//! # impl<M: Motor, C: QuadratureCounter> Machine<M, C> {
+//! fn every_5_ms(&mut self, now_us: u32) {
+//!     let counts = self.ports.encoders.counts();
+//!     let _ = self.ports.drive.step(now_us, counts); // what it says, the next tick's record says, too
+//! }
+//!
+//! fn every_50_ms(&mut self, now_us: u32, path: &Path<'_>) -> TickRecord {
+//!     self.ports.ranges.at(now_us);                  // posted to in between, as sensors answer
+//!     self.robot.tick(path, &mut self.ports)
+//! }
+//! # }
+//! ```
+//!
 //! The drivers' clock is `now_us`: microseconds of any free-running counter, 32 bits, wrapping (every 71.6 minutes).
 //! All of them get the same one, and each is called at least every half hour.
 

@@ -11,6 +11,8 @@ mod echo;
 mod quadrature;
 #[path = "ports/ring.rs"]
 mod ring;
+#[path = "ports/robot.rs"]
+mod robot;
 #[path = "ports/time_of_flight.rs"]
 mod time_of_flight;
 #[path = "ports/wheel_loop.rs"]

@@ -63,7 +63,8 @@ pub const HC_SR04: EchoSettings = EchoSettings {
 const TRIGGER_US: u32 = 10;
 
 /// `N` echo sensors on one clock, fired in turn in the order of their trigger pins; their index is their place in it.
-/// Neighbours hear each other most: put them far apart in the order.
+/// Neighbours hear each other most: put them far apart in the order. Each measures every `N` · `spacing`: the ring's
+/// [`max_age`](crate::params::RingGeometry::max_age) must be above that plus the longest echo, or readings go stale.
 ///
 /// Call [`poll`](Self::poll) every 0.1 to 2 ms. Report the echo pins by [`edge`](Self::edge): best from an interrupt on
 /// both edges or a timer's input capture (1 µs is 0.2 mm); else before each poll, with the pin's level (100 µs are 17 mm).

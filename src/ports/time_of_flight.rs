@@ -23,8 +23,8 @@
 //! | 1, 2, 3 laser or voltage check failed | any | [`Fault::Bus`] |
 //! | others (too near, no result, overflow) | any | [`Fault::OutOfRange`] |
 //!
-//! A bus error is [`Fault::Bus`], no answer in time [`Fault::Timeout`]. Clear means "nothing that reflects enough": black
-//! cloth is lost beyond some 0.7 m, so set the ring's `max_range` accordingly.
+//! A bus error is [`Fault::Bus`], no answer in time [`Fault::Timeout`]. Clear means "nothing that reflects enough": dark
+//! grey is lost beyond some 0.7 m, so set the ring's `max_range` accordingly.
 
 use super::micros::since;
 use super::ring::Sample;

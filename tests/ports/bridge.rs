@@ -270,6 +270,13 @@ fn the_standby_pin_wakes_once_and_sleeps_when_off() {
     assert_eq!(standby, [&("standby", 1), &("standby", 0), &("standby", 1)]);
 }
 
+#[test]
+fn the_ends_of_effort_are_symmetric() {
+    assert_eq!(Effort::from_bits(i16::MIN), Effort::FULL.reversed());
+    assert_eq!(Effort::lit("-1"), Effort::FULL.reversed());
+    assert_eq!(Effort::FULL.reversed().bits(), -32_767);
+}
+
 proptest! {
     #![proptest_config(config(512))]
 
