@@ -149,6 +149,7 @@ fn two_pwms(decay: Decay, command: MotorCommand) -> [u16; 2] {
     motor.command(command).unwrap();
     let log = log.borrow();
     assert_eq!(log.len(), 2, "{log:?}");
+    assert!(log[0].1 <= log[1].1, "the smaller first: {log:?}");
     let of = |name| log.iter().find(|(n, _)| *n == name).unwrap().1;
     [of("f"), of("b")]
 }

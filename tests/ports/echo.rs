@@ -162,6 +162,56 @@ fn a_missed_falling_edge_costs_one_reading() {
 }
 
 #[test]
+fn waiting_ends_when_the_settings_say() {
+    // No rise: 10 ms after the trigger, whenever the polls come.
+    for poll in [10_001, 10_700] {
+        let mut ring = EchoRing::new([Trigger::default()], HC_SR04).unwrap();
+        ring.poll(0);
+        ring.poll(10);
+        assert_eq!(ring.poll(10_000), None);
+        assert_eq!(
+            ring.poll(poll).map(|s| s.range),
+            Some(Range::Invalid(Fault::Timeout))
+        );
+    }
+    // No fall: 50 ms after the rise.
+    for poll in [50_501, 51_900] {
+        let mut ring = EchoRing::new([Trigger::default()], HC_SR04).unwrap();
+        ring.poll(0);
+        ring.poll(10);
+        ring.edge(0, true, 500);
+        assert_eq!(ring.poll(50_500), None);
+        assert_eq!(
+            ring.poll(poll).map(|s| s.range),
+            Some(Range::Invalid(Fault::Timeout))
+        );
+    }
+}
+
+#[test]
+fn a_new_temperature_counts_from_the_next_reading() {
+    let mut ring = EchoRing::new([Trigger::default()], HC_SR04).unwrap();
+    let mut ping = |start: u32, settings: Option<EchoSettings>| {
+        if let Some(settings) = settings {
+            ring.set(settings).unwrap();
+        }
+        ring.poll(start);
+        ring.poll(start + 10);
+        ring.edge(0, true, start + 500);
+        ring.edge(0, false, start + 10_500);
+        match ring.poll(start + 10_600).unwrap().range {
+            Range::Echo(distance) => distance.get().to_num::<f64>(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let warm = ping(0, None);
+    let sound = speed_of_sound(fx(-10.0));
+    let cold = ping(60_000, Some(EchoSettings { sound, ..HC_SR04 }));
+    assert!((warm - 1.716).abs() < 1e-3, "{warm}");
+    assert!((cold - 1.626).abs() < 1e-3, "{cold}");
+}
+
+#[test]
 fn sensors_fire_in_turn_with_the_spacing_between() {
     let near = Some((450, Some(2_914)));
     let (samples, triggers) = run([near, None, near], HC_SR04, u32::MAX - 90_000, 400_000, 100);

@@ -65,15 +65,32 @@ fn an_old_reading_never_becomes_fresh_when_the_clock_wraps() {
     latest.post(0, Range::Clear, 0);
     let mut now = 0_u32;
     for _ in 0..200 {
-        now = now.wrapping_add(30_000_000);
+        now = now.wrapping_add(31_000_000);
         let reading = read(&mut latest, now)[0];
         assert!(
-            reading.range == STALE || reading.age >= seconds(30.0),
+            reading.range == STALE || reading.age >= seconds(31.0),
             "{now}: {reading:?}"
         );
     }
     latest.post(0, Range::Clear, now);
     assert_eq!(read(&mut latest, now)[0], RangeReading::fresh(Range::Clear));
+}
+
+#[test]
+fn after_two_minutes_a_reading_is_stale_and_its_age_saturates() {
+    for (age, stale) in [
+        (120_000_000, false),
+        (120_000_001, true),
+        (2_000_000_000, true),
+    ] {
+        let mut latest = Latest::<1>::new();
+        latest.post(0, Range::Clear, 7);
+        let reading = read(&mut latest, 7 + age)[0];
+        assert_eq!(reading.range == STALE, stale, "{age}");
+        let expected = (f64::from(age) * 1e-6).min(127.999_999);
+        let got: f64 = reading.age.get().to_num();
+        assert!((got - expected).abs() < 1e-6, "{got} for {expected}");
+    }
 }
 
 #[test]
