@@ -13,6 +13,38 @@ use crate::signals::{Behaviour, Decision, Sensed, TickRecord, Twist};
 use crate::supervisor::{Situation, SupervisorState};
 use crate::units::MetresPerSecond;
 
+/// A part of the tick, for a [`Probe`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Reading the encoders and the ranges.
+    Read,
+    /// Counts to travel, echoes to obstacles.
+    Sense,
+    /// Travel to pose.
+    Localise,
+    /// Cursor, guidance law and speed limit.
+    Guide,
+    /// The higher level's decision.
+    Supervise,
+    /// The lower level's tables.
+    Behave,
+    /// The last barrier.
+    Guard,
+    /// Twist to wheels.
+    Drive,
+}
+
+/// Watches a tick go from stage to stage, to measure what each costs.
+pub trait Probe {
+    /// `stage` is done.
+    fn mark(&mut self, stage: Stage);
+}
+
+/// Watches nothing and costs nothing.
+impl Probe for () {
+    fn mark(&mut self, _: Stage) {}
+}
+
 /// A robot with up to `N` range sensors: its settings and everything that it remembers from tick to tick.
 #[derive(Clone, Debug)]
 pub struct Robot<const N: usize> {
@@ -105,17 +137,36 @@ impl<const N: usize> Robot<N> {
         E: WheelEncoders,
         R: RangeSensors,
     {
+        self.tick_observed(path, ports, &mut ())
+    }
+
+    /// [`Robot::tick`] with a look at each stage's end.
+    pub fn tick_observed<D, E, R, P>(
+        &mut self,
+        path: &Path<'_>,
+        ports: &mut Ports<D, E, R>,
+        probe: &mut P,
+    ) -> TickRecord
+    where
+        D: WheelDrive,
+        E: WheelEncoders,
+        R: RangeSensors,
+        P: Probe,
+    {
         let p = &self.params;
         let counts = ports.encoders.counts();
         let mounted = p.ring.mounts.len().min(N);
         let readings = self.readings.get_mut(..mounted).unwrap_or_default();
         readings.fill(RangeReading::NEVER_SEEN);
         ports.ranges.read(readings);
+        probe.mark(Stage::Read);
 
         let travel = self.odometer.travel(counts);
         let sensed = &mut self.sensed;
         sense_ranges(&p.ring, readings, self.last.linear, sensed);
+        probe.mark(Stage::Sense);
         let pose = self.localiser.advance(&p.body, p.integrator, travel);
+        probe.mark(Stage::Localise);
         let timing = (p.period, p.latency);
         let guidance = guide(
             &p.follower,
@@ -126,6 +177,7 @@ impl<const N: usize> Robot<N> {
             pose,
             self.last,
         );
+        probe.mark(Stage::Guide);
         let situation = Situation {
             robot_radius: p.body.radius,
             sensed,
@@ -136,6 +188,7 @@ impl<const N: usize> Robot<N> {
         let decision = self
             .supervisor
             .decide(&p.supervisor, &p.avoider, &situation);
+        probe.mark(Stage::Supervise);
         let Behaviour {
             twist: desired,
             trace,
@@ -151,8 +204,11 @@ impl<const N: usize> Robot<N> {
             ),
             Decision::Stop(_) => Behaviour::default(),
         };
+        probe.mark(Stage::Behave);
         let (passed, guarded) = guard(&p.guard, p.body.radius, timing, sensed, self.last, desired);
+        probe.mark(Stage::Guard);
         let driven = drive(&p.body, &p.limits, p.period, self.last, passed);
+        probe.mark(Stage::Drive);
 
         let left = ports.drive.set_speed(Side::Left, driven.wheels.left);
         let right = ports.drive.set_speed(Side::Right, driven.wheels.right);

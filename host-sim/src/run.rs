@@ -11,7 +11,7 @@ use crate::track::{Piece, Track};
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::guide::{Path, PathError, Segment, Waypoint};
 use fuzzypilot::params::{ParamError, Params};
-use fuzzypilot::ports::Ports;
+use fuzzypilot::ports::{Fault, Ports, RangeReading, WheelCounts, WheelEncoders};
 use fuzzypilot::signals::{Decision, StopReason, TickRecord};
 use fuzzypilot::tick::Robot;
 use std::f64::consts::TAU;
@@ -33,6 +33,10 @@ pub struct Step<'a> {
     pub cross_track: f64,
     /// Ranges as measured.
     pub ranges: &'a [Option<f64>],
+    /// What the robot's ports gave it: wheel counts…
+    pub counts: Result<WheelCounts, Fault>,
+    /// …and range readings.
+    pub readings: &'a [RangeReading],
 }
 
 /// How a run ended.
@@ -236,6 +240,8 @@ impl<const N: usize> Bench<N> {
                 .track
                 .cross_track(at, si::from_metres(record.guidance.progress)),
             ranges: &self.ports.ranges.seen,
+            counts: self.ports.encoders.counts(),
+            readings: &self.ports.ranges.readings,
         });
         self.plant.command(self.ports.drive.command);
         self.plant.advance(scenario.robot.period);

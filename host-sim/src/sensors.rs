@@ -101,7 +101,8 @@ impl WheelEncoders for SimEncoders {
 /// The ring of ranges.
 #[derive(Clone, Debug)]
 pub struct SimRanges<const N: usize> {
-    readings: [RangeReading; N],
+    /// As the robot reads them.
+    pub readings: [RangeReading; N],
     /// Metres, for the recording; none where nothing was seen.
     pub seen: [Option<f64>; N],
     noise: Noise,
