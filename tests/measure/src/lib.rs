@@ -1,0 +1,25 @@
+//! Compares the tick on emulated microcontrollers with the desktop's byte by byte, and counts what it costs there.
+//!
+//! ```text
+//! suite ──▶ tapes and the desktop's records ──▶ machine: QEMU plays them (tests/replica) ──▶ exact: compare
+//!                                                                                       └──▶ counts ──▶ budgets
+//! ```
+
+pub mod budgets;
+pub mod clock;
+pub mod counts;
+pub mod digests;
+pub mod exact;
+pub mod footprint;
+pub mod machine;
+pub mod suite;
+pub mod synthetic;
+pub mod tape;
+
+use std::path::PathBuf;
+
+/// A file of the repository.
+pub fn repository(path: &str) -> PathBuf {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    PathBuf::from(root).join(path)
+}

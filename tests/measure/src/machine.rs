@@ -1,0 +1,241 @@
+//! The emulated microcontrollers: building the images (`tests/replica`) and running them in QEMU.
+
+use crate::repository;
+use anyhow::{Context, bail, ensure};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// One emulated microcontroller.
+#[derive(Debug)]
+pub struct Machine {
+    /// Its core, for people.
+    pub name: &'static str,
+    /// Its core, for files.
+    pub key: &'static str,
+    /// What its image is compiled for.
+    pub target: &'static str,
+    emulator: &'static str,
+    board: &'static [&'static str],
+    /// Rate of its clock, Hz; on RISC-V QEMU counts nanoseconds.
+    rate: f64,
+}
+
+/// All of them.
+pub const MACHINES: [Machine; 3] = [
+    Machine {
+        name: "Cortex-M4F",
+        key: "m4f",
+        target: "thumbv7em-none-eabihf",
+        emulator: "qemu-system-arm",
+        board: &["-machine", "netduinoplus2"],
+        rate: 168e6,
+    },
+    Machine {
+        name: "Cortex-M0",
+        key: "m0",
+        target: "thumbv6m-none-eabi",
+        emulator: "qemu-system-arm",
+        board: &["-machine", "microbit"],
+        rate: 16e6,
+    },
+    Machine {
+        name: "RISC-V",
+        key: "rv32",
+        target: "riscv32imc-unknown-none-elf",
+        emulator: "qemu-system-riscv32",
+        board: &["-machine", "sifive_e", "-bios", "none"],
+        rate: 1e9,
+    },
+];
+
+/// The machines that are counted, too.
+pub fn counted() -> impl Iterator<Item = &'static Machine> {
+    MACHINES.iter().filter(|machine| machine.key != "rv32")
+}
+
+/// How the emulator keeps time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Time {
+    /// As it likes: fastest.
+    Free,
+    /// Every instruction takes [`NANOSECONDS`].
+    Counted,
+    /// As it likes, and every instruction is a line of the file `log`.
+    Logged,
+}
+
+/// 2 to the power of `-icount`'s shift. Long enough for more than two ticks of the slowest clock an instruction, so that
+/// the clock tells single instructions; short enough for a tick to end before the fastest wraps.
+const NANOSECONDS: f64 = 256.0;
+const SHIFT: &str = "shift=8,sleep=off";
+
+/// No run takes longer than this.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// A tool that is not there.
+#[derive(Debug)]
+pub struct Missing(pub String);
+
+impl std::fmt::Display for Missing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Missing {}
+
+impl Machine {
+    /// Instructions between two readings of the clock.
+    pub fn instructions(&self, ticks: u32) -> f64 {
+        f64::from(ticks) / (self.rate * NANOSECONDS * 1e-9)
+    }
+
+    /// Runs `image` on a file of tapes in `folder`; answers with what it wrote.
+    pub fn run(
+        &self,
+        image: &Path,
+        folder: &Path,
+        tapes: &[u8],
+        time: Time,
+    ) -> anyhow::Result<Outcome> {
+        std::fs::write(folder.join("tape"), tapes)
+            .with_context(|| format!("{}: cannot be written", folder.display()))?;
+        let mut command = Command::new(self.emulator);
+        command
+            .current_dir(folder)
+            .args(self.board)
+            .args(["-display", "none", "-monitor", "none", "-serial", "none"])
+            .args(["-semihosting-config", "enable=on,target=native"])
+            .arg("-kernel")
+            .arg(image)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped());
+        match time {
+            Time::Free => {}
+            Time::Counted => {
+                command.args(["-icount", SHIFT]);
+            }
+            Time::Logged => {
+                command.args(["-d", "exec,nochain", "-D", "log"]);
+                // One instruction a block; the older spelling is gone in newer versions.
+                match version(self.emulator)? {
+                    ..9 => command.arg("-singlestep"),
+                    _ => command.args(["-accel", "tcg,one-insn-per-tb=on"]),
+                };
+            }
+        }
+        let child = command.spawn().map_err(|e| self.missing(&e))?;
+        let failure = self.wait(child)?;
+        let out = std::fs::read(folder.join("out")).unwrap_or_default();
+        Ok(Outcome { out, failure })
+    }
+
+    /// What went wrong, if anything did.
+    fn wait(&self, mut child: Child) -> anyhow::Result<Option<String>> {
+        let begin = Instant::now();
+        while child.try_wait()?.is_none() {
+            if begin.elapsed() > PATIENCE {
+                child.kill()?;
+                child.wait()?;
+                let limit = PATIENCE.as_secs();
+                return Ok(Some(format!("{}: not finished in {limit} s", self.name)));
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let done = child.wait_with_output()?;
+        let said = String::from_utf8_lossy(&done.stderr).trim().to_owned();
+        Ok(match done.status.code() {
+            Some(0) => None,
+            code => Some(format!("{}: exit code {code:?}: {said}", self.name)),
+        })
+    }
+
+    fn missing(&self, error: &std::io::Error) -> anyhow::Error {
+        missing(self.emulator, error)
+    }
+}
+
+fn missing(emulator: &str, error: &std::io::Error) -> anyhow::Error {
+    let how = "apt-get install -y --no-install-recommends qemu-system-arm qemu-system-misc";
+    Missing(format!(
+        "{emulator} cannot be started ({error}); to get it: {how}"
+    ))
+    .into()
+}
+
+/// The emulator's major version.
+fn version(emulator: &str) -> anyhow::Result<u32> {
+    let output = Command::new(emulator)
+        .arg("--version")
+        .output()
+        .map_err(|e| missing(emulator, &e))?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let major = text
+        .split_whitespace()
+        .skip_while(|word| *word != "version")
+        .nth(1)
+        .and_then(|version| version.split('.').next())
+        .and_then(|major| major.parse().ok());
+    major.with_context(|| format!("{emulator} --version: not understood: {text}"))
+}
+
+/// What a run left behind.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// What the image wrote.
+    pub out: Vec<u8>,
+    /// Why it ended early, if it did.
+    pub failure: Option<String>,
+}
+
+impl Outcome {
+    /// The words written, if the run went well.
+    pub fn words(self) -> anyhow::Result<Vec<u32>> {
+        if let Some(failure) = self.failure {
+            bail!(failure);
+        }
+        let (words, rest) = self.out.as_chunks::<4>();
+        ensure!(rest.is_empty(), "the image wrote half a word");
+        Ok(words.iter().map(|word| u32::from_le_bytes(*word)).collect())
+    }
+}
+
+/// The images, built.
+#[derive(Clone, Debug)]
+pub struct Images {
+    folder: PathBuf,
+}
+
+impl Images {
+    /// Builds them for these machines, in the release profile and without the flags that the firmware links with.
+    pub fn build<'m>(machines: impl IntoIterator<Item = &'m Machine>) -> anyhow::Result<Self> {
+        // Beside this program: `target/release/…` leads to `target/replica`.
+        let here = std::env::current_exe()?;
+        let folder = here
+            .ancestors()
+            .find(|folder| folder.join("CACHEDIR.TAG").is_file())
+            .context("the build folder was not found")?
+            .join("replica");
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let mut command = Command::new(cargo);
+        command
+            .current_dir(repository("."))
+            .env("CARGO_ENCODED_RUSTFLAGS", "")
+            .args(["build", "--quiet", "--release", "--package", "replica"])
+            .arg("--target-dir")
+            .arg(&folder);
+        for machine in machines {
+            command.args(["--target", machine.target]);
+        }
+        let status = command.status().context("cargo cannot be started")?;
+        ensure!(status.success(), "the images cannot be built");
+        Ok(Self { folder })
+    }
+
+    /// The file of an image.
+    pub fn of(&self, machine: &Machine, name: &str) -> PathBuf {
+        self.folder.join(machine.target).join("release").join(name)
+    }
+}
