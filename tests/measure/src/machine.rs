@@ -59,7 +59,7 @@ pub fn counted() -> impl Iterator<Item = &'static Machine> {
 pub enum Time {
     /// As it likes: fastest.
     Free,
-    /// Every instruction takes [`NANOSECONDS`].
+    /// Every instruction takes equally long.
     Counted,
     /// As it likes, and every instruction is a line of the file `log`.
     Logged,

@@ -37,13 +37,19 @@ pub fn varied(seed: u64) -> anyhow::Result<Vec<Tape>> {
     })
 }
 
-/// Runs for the comparison: at least `ticks` in all, or the plain ones and the invented ones if those are more.
-pub fn compared(ticks: usize) -> anyhow::Result<Vec<Tape>> {
-    let mut tapes = plain(1)?;
+/// What no robot ever sees.
+pub fn invented() -> anyhow::Result<Vec<Tape>> {
+    let mut tapes = synthetic::contrived()?;
     for seed in 1..=100 {
         tapes.push(synthetic::hostile(seed)?);
     }
-    tapes.extend(counted()?.contrived);
+    Ok(tapes)
+}
+
+/// Runs for the comparison: at least `ticks` in all, or the plain ones and the invented ones if those are more.
+pub fn compared(ticks: usize) -> anyhow::Result<Vec<Tape>> {
+    let mut tapes = plain(1)?;
+    tapes.extend(invented()?);
     let mut seed = 2;
     let mut so_far: usize = tapes.iter().map(Tape::ticks).sum();
     while so_far < ticks {
