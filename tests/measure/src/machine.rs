@@ -19,6 +19,8 @@ pub struct Machine {
     board: &'static [&'static str],
     /// Rate of its clock, Hz; on RISC-V QEMU counts nanoseconds.
     rate: f64,
+    /// Whether it has a budget.
+    pub budgeted: bool,
 }
 
 /// All of them.
@@ -30,6 +32,7 @@ pub const MACHINES: [Machine; 3] = [
         emulator: "qemu-system-arm",
         board: &["-machine", "netduinoplus2"],
         rate: 168e6,
+        budgeted: true,
     },
     Machine {
         name: "Cortex-M0",
@@ -38,6 +41,7 @@ pub const MACHINES: [Machine; 3] = [
         emulator: "qemu-system-arm",
         board: &["-machine", "microbit"],
         rate: 16e6,
+        budgeted: true,
     },
     Machine {
         name: "RISC-V",
@@ -46,13 +50,9 @@ pub const MACHINES: [Machine; 3] = [
         emulator: "qemu-system-riscv32",
         board: &["-machine", "sifive_e", "-bios", "none"],
         rate: 1e9,
+        budgeted: false,
     },
 ];
-
-/// The machines that are counted, too.
-pub fn counted() -> impl Iterator<Item = &'static Machine> {
-    MACHINES.iter().filter(|machine| machine.key != "rv32")
-}
 
 /// How the emulator keeps time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,8 +209,8 @@ pub struct Images {
 }
 
 impl Images {
-    /// Builds them for these machines, in the release profile and without the flags that the firmware links with.
-    pub fn build<'m>(machines: impl IntoIterator<Item = &'m Machine>) -> anyhow::Result<Self> {
+    /// Builds them for every machine, in the release profile and without the flags that the firmware links with.
+    pub fn build() -> anyhow::Result<Self> {
         // Beside this program: `target/release/…` leads to `target/replica`.
         let here = std::env::current_exe()?;
         let folder = here
@@ -226,7 +226,7 @@ impl Images {
             .args(["build", "--quiet", "--release", "--package", "replica"])
             .arg("--target-dir")
             .arg(&folder);
-        for machine in machines {
+        for machine in &MACHINES {
             command.args(["--target", machine.target]);
         }
         let status = command.status().context("cargo cannot be started")?;
