@@ -98,7 +98,7 @@ impl Plant {
 
     fn accelerate(&mut self, dt: f64) {
         let share = if self.settings.lag > 0.0 {
-            1.0 - (-dt / self.settings.lag).exp()
+            1.0 - libm::exp(-dt / self.settings.lag)
         } else {
             1.0
         };
@@ -132,14 +132,14 @@ impl Plant {
                 let sinc = if half.abs() < 1e-9 {
                     1.0
                 } else {
-                    half.sin() / half
+                    libm::sin(half) / half
                 };
                 (heading + half, v * dt * sinc)
             }
         };
         self.pose = [
-            x + chord * along.cos(),
-            y + chord * along.sin(),
+            x + chord * libm::cos(along),
+            y + chord * libm::sin(along),
             crate::world::wrap(heading + turned),
         ];
         for (travel, wheel) in self.travel.iter_mut().zip(self.wheels) {

@@ -123,8 +123,8 @@ pub fn beams(sensors: &SensorSpec) -> Vec<BeamView> {
         .map(|i| {
             let heading = sensors.field_of_view * (i as f64 / spaces as f64 - 0.5);
             BeamView {
-                x: sensors.mount_radius * heading.cos(),
-                y: sensors.mount_radius * heading.sin(),
+                x: sensors.mount_radius * libm::cos(heading),
+                y: sensors.mount_radius * libm::sin(heading),
                 heading,
                 width: sensors.width,
                 max_range: sensors.range,

@@ -109,7 +109,7 @@ impl OwnedPath {
 fn segment(piece: &Piece) -> Segment {
     match *piece {
         Piece::Line { from, to } => {
-            let heading = (to[1] - from[1]).atan2(to[0] - from[0]);
+            let heading = libm::atan2(to[1] - from[1], to[0] - from[0]);
             Segment::line(
                 si::pose([from[0], from[1], heading]),
                 si::metres(piece.length()),

@@ -1,7 +1,8 @@
 //! The library's ports, implemented for the simulated robot: encoders with scale error, ray-cast ranges with noise.
 //!
-//! Every random number comes from one named generator, `Pcg64Mcg` seeded by the run's seed, in a fixed order: the
-//! same seed gives the same run on every machine.
+//! Every random number comes from one named generator, `Pcg64Mcg` seeded by the run's seed, in a fixed order, and what
+//! moves the robot is computed with `libm`'s sines, not the system's, which differ in the last bit: the same seed gives
+//! the same run on every machine.
 
 use crate::recording::BeamView;
 use crate::si;
@@ -122,7 +123,7 @@ impl<const N: usize> SimRanges<N> {
 
     /// Measures from the true pose.
     pub fn observe(&mut self, world: &World, beams: &[BeamView], [x, y, heading]: [f64; 3]) {
-        let (sin, cos) = heading.sin_cos();
+        let (sin, cos) = libm::sincos(heading);
         for (i, beam) in beams.iter().enumerate().take(N) {
             let at = [
                 x + beam.x * cos - beam.y * sin,

@@ -30,7 +30,7 @@ impl Piece {
     /// Length.
     pub fn length(&self) -> f64 {
         match *self {
-            Self::Line { from, to } => (to[0] - from[0]).hypot(to[1] - from[1]),
+            Self::Line { from, to } => libm::hypot(to[0] - from[0], to[1] - from[1]),
             Self::Arc { radius, sweep, .. } => radius * sweep.abs(),
         }
     }
@@ -39,10 +39,10 @@ impl Piece {
     pub fn at(&self, along: f64) -> [f64; 3] {
         match *self {
             Self::Line { from, to } => {
-                let heading = (to[1] - from[1]).atan2(to[0] - from[0]);
+                let heading = libm::atan2(to[1] - from[1], to[0] - from[0]);
                 [
-                    from[0] + along * heading.cos(),
-                    from[1] + along * heading.sin(),
+                    from[0] + along * libm::cos(heading),
+                    from[1] + along * libm::sin(heading),
                     heading,
                 ]
             }
@@ -54,8 +54,8 @@ impl Piece {
             } => {
                 let out = from + along / radius * sweep.signum();
                 [
-                    centre[0] + radius * out.cos(),
-                    centre[1] + radius * out.sin(),
+                    centre[0] + radius * libm::cos(out),
+                    centre[1] + radius * libm::sin(out),
                     wrap(out + FRAC_PI_2.copysign(sweep)),
                 ]
             }
@@ -187,6 +187,9 @@ impl Track {
             .pieces
             .get(index)
             .map_or([0.0; 3], |p| p.at(along - self.starts[index]));
-        [x - offset * heading.sin(), y + offset * heading.cos()]
+        [
+            x - offset * libm::sin(heading),
+            y + offset * libm::cos(heading),
+        ]
     }
 }

@@ -13,7 +13,7 @@ impl World {
     /// Distance along a ray from (x, y) in direction `heading` to the first surface, if within `reach`. A ray that
     /// starts inside a disc meets it at 0.
     pub fn cast(&self, [x, y]: [f64; 2], heading: f64, reach: f64) -> Option<f64> {
-        let (sin, cos) = heading.sin_cos();
+        let (sin, cos) = libm::sincos(heading);
         let mut nearest = f64::INFINITY;
         for disc in &self.discs {
             let (dx, dy) = (disc.x - x, disc.y - y);
@@ -39,9 +39,9 @@ impl World {
         let mut nearest = f64::INFINITY;
         for disc in &self.discs {
             let (dx, dy) = (disc.x - at[0], disc.y - at[1]);
-            let off = wrap(dy.atan2(dx) - heading);
+            let off = wrap(libm::atan2(dy, dx) - heading);
             if off.abs() <= width / 2.0 {
-                nearest = nearest.min((dx.hypot(dy) - disc.radius).max(0.0));
+                nearest = nearest.min((libm::hypot(dx, dy) - disc.radius).max(0.0));
             }
         }
         for edge in [heading - width / 2.0, heading + width / 2.0] {
