@@ -15,6 +15,8 @@ pub struct Machine {
     pub key: &'static str,
     /// What its image is compiled for.
     pub target: &'static str,
+    /// In which of the images' profiles.
+    profile: &'static str,
     emulator: &'static str,
     board: &'static [&'static str],
     /// Rate of its clock, Hz; on RISC-V QEMU counts nanoseconds.
@@ -29,6 +31,7 @@ pub const MACHINES: [Machine; 3] = [
         name: "Cortex-M4F",
         key: "m4f",
         target: "thumbv7em-none-eabihf",
+        profile: "firmware",
         emulator: "qemu-system-arm",
         board: &["-machine", "netduinoplus2"],
         rate: 168e6,
@@ -38,6 +41,7 @@ pub const MACHINES: [Machine; 3] = [
         name: "Cortex-M0",
         key: "m0",
         target: "thumbv6m-none-eabi",
+        profile: "firmware-fast",
         emulator: "qemu-system-arm",
         board: &["-machine", "microbit"],
         rate: 16e6,
@@ -47,6 +51,7 @@ pub const MACHINES: [Machine; 3] = [
         name: "RISC-V",
         key: "rv32",
         target: "riscv32imc-unknown-none-elf",
+        profile: "firmware-fast",
         emulator: "qemu-system-riscv32",
         board: &["-machine", "sifive_e", "-bios", "none"],
         rate: 1e9,
@@ -209,7 +214,7 @@ pub struct Images {
 }
 
 impl Images {
-    /// Builds them for every machine, in the release profile and without the flags that the firmware links with.
+    /// Builds them for every machine, in its firmware's profile and without the flags that the firmware links with.
     pub fn build() -> anyhow::Result<Self> {
         // Beside this program: `target/release/…` leads to `target/replica`.
         let here = std::env::current_exe()?;
@@ -219,23 +224,25 @@ impl Images {
             .context("the build folder was not found")?
             .join("replica");
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let mut command = Command::new(cargo);
-        command
-            .current_dir(repository("."))
-            .env("CARGO_ENCODED_RUSTFLAGS", "")
-            .args(["build", "--quiet", "--release", "--package", "replica"])
-            .arg("--target-dir")
-            .arg(&folder);
         for machine in &MACHINES {
-            command.args(["--target", machine.target]);
+            let status = Command::new(&cargo)
+                .current_dir(repository("."))
+                .env("CARGO_ENCODED_RUSTFLAGS", "")
+                .args(["build", "--quiet", "--package", "replica"])
+                .args(["--profile", machine.profile, "--target", machine.target])
+                .arg("--target-dir")
+                .arg(&folder)
+                .status()
+                .context("cargo cannot be started")?;
+            let name = machine.name;
+            ensure!(status.success(), "the image for {name} cannot be built");
         }
-        let status = command.status().context("cargo cannot be started")?;
-        ensure!(status.success(), "the images cannot be built");
         Ok(Self { folder })
     }
 
     /// The file of an image.
     pub fn of(&self, machine: &Machine, name: &str) -> PathBuf {
-        self.folder.join(machine.target).join("release").join(name)
+        let built = self.folder.join(machine.target).join(machine.profile);
+        built.join(name)
     }
 }
