@@ -193,6 +193,9 @@ impl OutputPin for Shutdown {
     fn set_high(&mut self) -> Result<(), Infallible> {
         let world = &mut *self.0.borrow_mut();
         let part = &mut world.parts[self.1];
+        if part.powered {
+            return Ok(());
+        }
         part.powered = true;
         part.powers += 1;
         part.address = RESET_ADDRESS;
@@ -343,9 +346,12 @@ fn several_sensors_get_addresses_and_measure() {
 fn the_start_up_takes_as_many_transactions_as_documented() {
     let mut rig = Rig::<1>::new(TimingBudget::NORMAL);
     let mut all = 0;
-    while !rig.world.borrow().parts[0].ranging {
+    for _ in 0..200 {
         assert_eq!(rig.run(1, 4), []);
         all += rig.world.borrow().transactions;
+        if rig.world.borrow().parts[0].ranging {
+            break;
+        }
     }
     // One more for each further time that it looks whether a measurement has ended.
     assert_eq!(all, 151 + 2, "two looks came too early");
@@ -362,6 +368,11 @@ fn one_absent_sensor_does_not_stop_the_others() {
     for index in [0, 2] {
         assert!(of(&samples, index).len() > 30);
     }
+    let powers = rig.world.borrow().parts[1].powers;
+    assert!(
+        (5..=8).contains(&powers),
+        "a rest of 0.2 s between: {powers}"
+    );
     // Plugged in.
     rig.part(1, |part| part.trouble = Trouble::None);
     assert!(of(&rig.run(1_000, 4), 1).contains(&HALF));
@@ -415,6 +426,64 @@ fn silent_stuck_and_foreign_sensors_are_told_and_retried() {
         rig.part(0, |part| part.trouble = Trouble::None);
         assert!(of(&rig.run(1_000, 4), 0).contains(&HALF), "{trouble:?}");
     }
+}
+
+#[test]
+fn waiting_is_bounded_to_the_millisecond() {
+    // A start-up measurement that never ends: 100 ms.
+    let mut rig = Rig::<1>::new(TimingBudget::NORMAL);
+    rig.part(0, |part| part.trouble = Trouble::Stuck);
+    let asked = |rig: &Rig<1>| rig.world.borrow().parts[0].registers.get(&(0, 0x00)) == Some(&0x41);
+    let mut time = 0;
+    while !asked(&rig) && time < 200 {
+        assert_eq!(rig.run(1, 3), []);
+        time += 1;
+    }
+    // The first look was in the same call.
+    assert_eq!(rig.run(100, 3), []);
+    assert_eq!(rig.run(1, 3).len(), 1);
+    // A measurement that never ends: twice the budget and 100 ms.
+    let mut rig = Rig::<1>::new(TimingBudget::NORMAL);
+    rig.part(0, |part| part.trouble = Trouble::Silent);
+    while !rig.world.borrow().parts[0].ranging && time < 1_000 {
+        rig.run(1, 4);
+        time += 1;
+    }
+    assert_eq!(rig.run(166, 4), []);
+    assert_eq!(rig.run(1, 4).len(), 1);
+}
+
+#[test]
+fn a_sensor_is_not_asked_before_its_result_can_be_there() {
+    let mut rig = Rig::<1>::new(TimingBudget::NORMAL);
+    rig.run(500, 4);
+    let mut time = 0;
+    while rig.run(1, 4).is_empty() && time < 100 {
+        time += 1;
+    }
+    for ms in 1..=33 {
+        rig.run(1, 4);
+        let asked = rig.world.borrow().transactions > 0;
+        assert_eq!(asked, ms >= 29, "after {ms} ms");
+    }
+}
+
+#[test]
+fn registers_keep_the_bits_that_are_not_the_drivers() {
+    let mut rig = Rig::<1>::new(TimingBudget::NORMAL);
+    let mut time = 0;
+    while !rig.world.borrow().parts[0].powered || time < 3 {
+        rig.run(1, 0);
+        time += 1;
+    }
+    rig.part(0, |part| {
+        part.registers.insert((0, 0x84), 0xFF);
+        part.registers.insert((0, 0x89), 0xF1);
+    });
+    rig.run(200, 6);
+    let registers = &rig.world.borrow().parts[0].registers;
+    assert_eq!(registers[&(0, 0x84)], 0xEF);
+    assert_eq!(registers[&(0, 0x89)], 0xF1);
 }
 
 #[test]

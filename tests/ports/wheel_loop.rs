@@ -246,6 +246,7 @@ fn a_stall_switches_both_off_until_cleared() {
     assert_eq!(result, Err(WheelFault::Stalled(Side::Right)));
     assert_eq!(rig.told(), COASTS);
     assert_eq!(rig.command(0.4, 0.4), [result; 2]);
+    assert_eq!(rig.drive.fault(), result.err());
     rig.held[1] = false;
     let result = rig.run(0.4, 0.4, 1.0).result;
     assert_eq!(result, Err(WheelFault::Stalled(Side::Right)), "it stays");
@@ -255,6 +256,39 @@ fn a_stall_switches_both_off_until_cleared() {
     assert_eq!(rig.told(), BRAKES, "the old command is not taken up again");
     rig.run(0.4, 0.4, 1.0);
     near(rig.speeds, [0.4, 0.4], 0.05);
+}
+
+#[test]
+fn a_stall_is_found_backwards_too() {
+    let mut rig = Rig::new(settings());
+    rig.run(-0.4, -0.4, 1.0);
+    rig.held[0] = true;
+    let result = rig.run(-0.4, -0.4, 1.5).result;
+    assert_eq!(result, Err(WheelFault::Stalled(Side::Left)));
+}
+
+#[test]
+fn rocking_a_held_wheel_is_no_stall() {
+    // Half the stall's time one way, then the other, and again.
+    let mut rig = Rig::new(settings());
+    rig.held = [true; 2];
+    for turn in 0..12 {
+        let wanted = if turn % 2 == 0 { 0.8 } else { -0.8 };
+        assert_eq!(rig.run(wanted, wanted, 0.3).result, Ok(()), "turn {turn}");
+    }
+}
+
+#[test]
+fn the_timeout_is_exact_and_a_late_step_sees_it() {
+    for (pause, drives) in [(200_000, true), (200_001, false), (900_000, false)] {
+        let mut rig = Rig::new(settings());
+        rig.run(0.4, 0.4, 0.5);
+        assert_eq!(rig.command(0.4, 0.4), [Ok(()); 2]);
+        rig.step(Ok(rig.counts())).unwrap();
+        rig.now = rig.now.wrapping_add(pause - STEP_US);
+        let _ = rig.step(Ok(rig.counts()));
+        assert_eq!(rig.told() != BRAKES, drives, "{pause}");
+    }
 }
 
 #[test]
@@ -352,6 +386,31 @@ fn stop_is_immediate_and_lasts() {
 }
 
 #[test]
+fn the_integral_is_gain_times_error_times_time() {
+    let mut control = SpeedLoop::default();
+    for _ in 0..10 {
+        control.step(&GAINS, Effort::FULL, speed(0.3), Some(speed(0.2)), 10_000);
+    }
+    // 5 /m · 0.1 m/s · 0.1 s.
+    let share = control.integral() as f64 / 2_f64.powi(32);
+    assert!((share - 0.05).abs() < 1e-4, "{share}");
+    // A pause counts 0.1 s only.
+    control.step(
+        &GAINS,
+        Effort::FULL,
+        speed(0.3),
+        Some(speed(0.2)),
+        3_000_000,
+    );
+    let share = control.integral() as f64 / 2_f64.powi(32);
+    assert!((share - 0.1).abs() < 1e-4, "{share}");
+    control.step(&GAINS, Effort::FULL, speed(0.3), None, 10_000);
+    assert!((control.integral() as f64 / 2_f64.powi(32) - share).abs() < 1e-9);
+    control.reset();
+    assert_eq!(control.integral(), 0);
+}
+
+#[test]
 fn settings_are_checked() {
     let with = |change: fn(&mut WheelLoopSettings)| {
         let mut settings = settings();
@@ -371,6 +430,14 @@ fn settings_are_checked() {
         Err("wheel_loop.timeout")
     );
     assert_eq!(with(|s| s.limit = Effort::ZERO), Err("wheel_loop.limit"));
+    assert_eq!(
+        with(|s| s.stall.effort = Effort::ZERO),
+        Err("wheel_loop.stall.effort")
+    );
+    assert_eq!(
+        with(|s| s.stall.time = seconds(0.0)),
+        Err("wheel_loop.stall.time")
+    );
     assert_eq!(
         with(|s| s.metres_per_count = U0F32::ZERO),
         Err("wheel_loop.metres_per_count")
