@@ -1,7 +1,14 @@
-//! What needs no emulator: the digests, and that a tape holds all that a tick depends on.
+//! What needs no emulator: the digests, that a tape holds all that a tick depends on, and that watching changes nothing.
 
+use fuzzypilot::geometry::Pose;
+use fuzzypilot::guide::{Path, Segment};
+use fuzzypilot::ports::Ports;
+use fuzzypilot::presets;
+use fuzzypilot::tick::{Probe, Robot, Stage};
+use fuzzypilot::units::Metres;
 use measure::tape::play;
 use measure::{digests, suite, synthetic};
+use replica::tape::{Inputs, NoWheels};
 
 #[test]
 fn every_run_computes_what_its_digest_says() {
@@ -32,4 +39,31 @@ fn hostile_tapes_reach_every_decision() {
         }
     }
     assert_eq!(seen, [true; 3], "follow, avoid, stop");
+}
+
+#[test]
+fn a_watched_tick_shows_every_stage_once_and_changes_nothing() {
+    struct Marks(Vec<Stage>);
+    impl Probe for Marks {
+        fn mark(&mut self, stage: Stage) {
+            self.0.push(stage);
+        }
+    }
+    let path = [Segment::line(Pose::default(), Metres::lit("2"))];
+    let path = Path::segments(&path, false).unwrap();
+    let robot = || Robot::<8>::new(presets::small_robot(), Pose::default());
+    let (mut watched, mut plain) = (robot(), robot());
+    let inputs = Inputs::new();
+    let ports = || Ports {
+        drive: NoWheels,
+        encoders: &inputs,
+        ranges: &inputs,
+    };
+    for _ in 0..20 {
+        let mut marks = Marks(Vec::new());
+        let record = watched.tick_observed(&path, &mut ports(), &mut marks);
+        assert_eq!(record, plain.tick(&path, &mut ports()));
+        let order: Vec<usize> = marks.0.iter().map(|stage| *stage as usize).collect();
+        assert_eq!(order, [0, 1, 2, 3, 4, 5, 6, 7]);
+    }
 }

@@ -78,8 +78,9 @@ fn run() -> Result<(), &'static str> {
         .create()
         .ok_or("the file `out` cannot be written")?;
     let mode = tape::open(&mut place.input).ok_or("the file `tape` is no tape of this form")?;
-    place.small = Some(Robot::new(presets::small_robot(), Pose::default()));
-    place.large = Some(Robot::new(presets::small_robot(), Pose::default()));
+    stack::guard();
+    put_robot(&mut place.small);
+    put_robot(&mut place.large);
     clock::start();
     let player = Player {
         input: &mut place.input,
@@ -88,7 +89,17 @@ fn run() -> Result<(), &'static str> {
         inputs: &mut place.inputs,
         mode,
     };
-    player.all(place.small.as_mut(), place.large.as_mut())
+    player.all(place.small.as_mut(), place.large.as_mut())?;
+    match stack::is_sound() {
+        true => Ok(()),
+        false => Err("the stack ran into the data"),
+    }
+}
+
+/// A call, so that what passes over the stack here is off it again.
+#[inline(never)]
+fn put_robot<const N: usize>(place: &mut Option<Robot<N>>) {
+    *place = Some(Robot::new(presets::small_robot(), Pose::default()));
 }
 
 /// What it takes to play.

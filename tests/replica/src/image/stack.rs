@@ -1,10 +1,34 @@
-//! How deep the stack goes: paint what lies below, call, and look how much paint is left.
+//! How deep the stack goes: paint what lies below, call, and look how much paint is left. And whether it ever went too
+//! deep.
 
 const PAINT: u32 = 0xA5A5_5A5A;
 /// Painted bytes; more stack than this cannot be told.
 const REACH: usize = 4096;
 /// Left alone for the painter itself.
 const OWN: usize = 128;
+
+unsafe extern "C" {
+    static mut _bss_end: [u32; GUARD];
+}
+
+/// Words above the data that nobody may touch.
+const GUARD: usize = 16;
+
+/// Paints the end of the stack.
+pub fn guard() {
+    let end = &raw mut _bss_end;
+    for i in 0..GUARD {
+        // SAFETY: above the data, far below the stack pointer.
+        unsafe { (&raw mut (*end)[i]).write_volatile(PAINT) };
+    }
+}
+
+/// Whether the stack's end is untouched.
+pub fn is_sound() -> bool {
+    let end = &raw const _bss_end;
+    // SAFETY: as above.
+    (0..GUARD).all(|i| unsafe { (&raw const (*end)[i]).read_volatile() } == PAINT)
+}
 
 #[inline(always)]
 fn pointer() -> usize {
