@@ -1,6 +1,6 @@
 //! What a run amounts to: the summary that is printed, written and compared.
 
-use crate::run::{Ending, Step};
+use crate::run::{Ending, Gap, Period, Step};
 use crate::scenario::Scenario;
 use crate::si;
 use crate::world::wrap;
@@ -49,7 +49,8 @@ pub struct Summary {
     pub sim_time_s: f64,
     /// The path was driven to its end (or all laps), as the robot believes: see `odometry_error_m`.
     pub reached_end: bool,
-    /// `path end`, `path missed` (over, but the robot elsewhere) or `time limit`.
+    /// `path end`, `path missed` (over, but the robot elsewhere) or `time limit`; with hardware in the loop also
+    /// `disarmed` or `link lost`.
     pub ended: &'static str,
     /// Times that the robot came into contact with an obstacle.
     pub collisions: u64,
@@ -86,6 +87,8 @@ pub struct Metrics {
     avoiding: bool,
     regained: bool,
     left_at: Option<u64>,
+    /// Control periods without a tick.
+    gaps: u64,
     period: f64,
     names: Vec<(String, [f64; 2])>,
 }
@@ -126,6 +129,7 @@ impl Metrics {
             avoiding: false,
             regained: false,
             left_at: None,
+            gaps: 0,
             period: scenario.robot.period,
             names: scenario
                 .world
@@ -140,20 +144,7 @@ impl Metrics {
     pub fn observe(&mut self, step: &Step<'_>) {
         let tick = self.summary.ticks;
         self.summary.ticks += 1;
-        let at = [step.truth[0], step.truth[1]];
-        if let Some(last) = self.last.replace(at) {
-            self.travelled += (at[0] - last[0]).hypot(at[1] - last[1]);
-        }
-        let clearance = step.clearance.0;
-        if clearance.is_finite() {
-            let least = self.summary.min_clearance_m.unwrap_or(f64::INFINITY);
-            self.summary.min_clearance_m = Some(least.min(clearance));
-        }
-        let touching = clearance < 0.0;
-        if touching && !self.touching {
-            self.summary.collisions += 1;
-        }
-        self.touching = touching;
+        let at = self.go_on(step.truth, step.clearance.0);
         self.summary.guarded_ticks += u64::from(step.record.guarded);
         let believed = si::from_pose(step.record.pose);
         self.summary.odometry_error_m = (believed[0] - at[0]).hypot(believed[1] - at[1]);
@@ -172,6 +163,37 @@ impl Metrics {
             }
             Decision::Stop(_) => self.leave(tick, step.cross_track),
         }
+    }
+
+    /// Takes a control period in, with a tick or without.
+    pub fn period(&mut self, period: &Period<'_>) {
+        match period {
+            Period::Tick(step) => self.observe(step),
+            Period::Gap(gap) => self.gap(gap),
+        }
+    }
+
+    fn gap(&mut self, gap: &Gap) {
+        self.gaps += 1;
+        self.go_on(gap.truth, gap.clearance.0);
+    }
+
+    /// Where the robot truly is; returned once more.
+    fn go_on(&mut self, truth: [f64; 3], clearance: f64) -> [f64; 2] {
+        let at = [truth[0], truth[1]];
+        if let Some(last) = self.last.replace(at) {
+            self.travelled += (at[0] - last[0]).hypot(at[1] - last[1]);
+        }
+        if clearance.is_finite() {
+            let least = self.summary.min_clearance_m.unwrap_or(f64::INFINITY);
+            self.summary.min_clearance_m = Some(least.min(clearance));
+        }
+        let touching = clearance < 0.0;
+        if touching && !self.touching {
+            self.summary.collisions += 1;
+        }
+        self.touching = touching;
+        at
     }
 
     fn avoid(&mut self, tick: u64, side: Turn, estimate: [f64; 2]) {
@@ -235,12 +257,14 @@ impl Metrics {
     /// The summary of a run that ended so.
     pub fn finish(mut self, ending: Ending) -> Summary {
         let s = &mut self.summary;
-        s.sim_time_s = s.ticks as f64 * self.period;
+        s.sim_time_s = (s.ticks + self.gaps) as f64 * self.period;
         s.reached_end = ending == Ending::PathEnd;
         s.ended = match ending {
             Ending::PathEnd => "path end",
             Ending::PathMissed => "path missed",
             Ending::TimeLimit => "time limit",
+            Ending::Disarmed => "disarmed",
+            Ending::LinkLost => "link lost",
         };
         s.mean_speed_mps = self.travelled / s.sim_time_s.max(f64::MIN_POSITIVE);
         if s.free_ticks > 0 {

@@ -35,8 +35,15 @@ pub struct Plant {
     /// Commands on their way: time of effect, wheel speeds.
     pending: VecDeque<(f64, [f64; 2])>,
     command: [f64; 2],
+    /// When the motors stop by themselves, s.
+    timeout: f64,
+    /// When they last did, s.
+    pub timed_out: Option<f64>,
     time: f64,
 }
+
+/// The motors stop by themselves when a command is late by this much, s: what the drive port's contract asks for.
+pub const COMMAND_TIMEOUT: f64 = 0.2;
 
 /// Integration step within a control period, s.
 const SUBSTEP: f64 = 0.005;
@@ -51,29 +58,43 @@ impl Plant {
             travel: [0.0; 2],
             pending: VecDeque::new(),
             command: [0.0; 2],
+            timeout: f64::INFINITY,
+            timed_out: None,
             time: 0.0,
         }
     }
 
-    /// Takes a wheel command over, to act after the latency.
-    pub fn command(&mut self, wheels: [f64; 2]) {
+    /// Takes a wheel command over, to act after the latency. Without another one within `timeout`, s, the motors stop.
+    pub fn command(&mut self, wheels: [f64; 2], timeout: f64) {
         self.pending
             .push_back((self.time + self.settings.latency, wheels));
+        self.timeout = self.time + timeout;
+    }
+
+    /// Whether it stands, and no command will change that.
+    pub fn stands(&self) -> bool {
+        self.pending.is_empty() && [self.command, self.wheels] == [[0.0; 2]; 2]
     }
 
     /// Lets one control period pass.
     pub fn advance(&mut self, period: f64) {
         match self.settings.integrator {
             Integrator::Euler => {
-                self.receive();
-                self.wheels = self.command.map(|w| self.saturate(w));
-                self.travel_by(period);
+                // One step as printed, unless the motors stop within it.
+                let before = (self.timeout - self.time).clamp(0.0, period);
+                for dt in [before, period - before] {
+                    if dt > 0.0 {
+                        self.receive(dt);
+                        self.wheels = self.command.map(|w| self.saturate(w));
+                        self.travel_by(dt);
+                    }
+                }
             }
             Integrator::Arc => {
                 let steps = (period / SUBSTEP).ceil().max(1.0);
                 let dt = period / steps;
                 for _ in 0..steps as usize {
-                    self.receive();
+                    self.receive(dt);
                     self.accelerate(dt);
                     self.travel_by(dt);
                 }
@@ -85,14 +106,20 @@ impl Plant {
         wheel.clamp(-self.settings.wheel_speed, self.settings.wheel_speed)
     }
 
-    /// The newest command whose time has come.
-    fn receive(&mut self) {
+    /// The newest command whose time has come; none of them in a step in which the motors stop by themselves.
+    fn receive(&mut self, dt: f64) {
         while let Some((due, wheels)) = self.pending.front().copied() {
             if due > self.time + 1e-9 {
                 break;
             }
             self.command = wheels;
             self.pending.pop_front();
+        }
+        if self.time + dt > self.timeout + 1e-9 {
+            self.timed_out = Some(self.time);
+            self.timeout = f64::INFINITY;
+            self.command = [0.0; 2];
+            self.pending.clear();
         }
     }
 

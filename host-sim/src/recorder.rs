@@ -2,7 +2,7 @@
 
 use crate::recording::{FiredView, Frame, Recording};
 use crate::robot::beams;
-use crate::run::Step;
+use crate::run::{Gap, Period, Step};
 use crate::scenario::Scenario;
 use crate::si;
 use crate::tables::{COARSE_DEFLECTION, COARSE_SPEED, FINE_DEFLECTION, FINE_SPEED, views};
@@ -60,6 +60,42 @@ pub fn record(recording: &mut Recording, step: &Step<'_>) {
         estimate,
         signals: signals(&record.trace),
         fired: fired(&record.trace),
+    });
+}
+
+/// Adds a control period, with a tick or without.
+pub fn period(recording: &mut Recording, period: &Period<'_>) {
+    match period {
+        Period::Tick(step) => record(recording, step),
+        Period::Gap(gap) => pause(recording, gap),
+    }
+}
+
+/// What the robot believes and was told before, it believes and does still.
+fn pause(recording: &mut Recording, gap: &Gap) {
+    let (believed, mode, twist) = match (recording.frames.last(), gap.disarmed) {
+        (Some(last), None) => (last.believed, last.mode, last.twist),
+        (Some(last), Some(_)) => (last.believed, "stop", [0.0; 2]),
+        (None, _) => (gap.truth, "stop", [0.0; 2]),
+    };
+    let note = match gap.disarmed {
+        Some(_) => "disarmed",
+        None => "no answer",
+    };
+    recording.frames.push(Frame {
+        t: gap.time,
+        truth: gap.truth,
+        believed,
+        mode,
+        note,
+        cross_track: gap.cross_track,
+        clearance: gap.clearance.0,
+        twist,
+        wheels: gap.wheels,
+        ranges: vec![None; recording.beams.len()],
+        estimate: None,
+        signals: Vec::new(),
+        fired: Vec::new(),
     });
 }
 

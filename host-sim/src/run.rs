@@ -1,19 +1,21 @@
-//! The loop: plant and sensors around the library's own tick.
+//! The loop: plant and sensors around the library's own tick, which is computed here or by a [`Controller`] elsewhere.
 
 use crate::params::params;
-use crate::plant::{Plant, PlantSettings};
+use crate::plant::{COMMAND_TIMEOUT, Plant, PlantSettings};
 use crate::recording::BeamView;
 use crate::robot::beams;
 use crate::scenario::{PathForm, Scenario};
 use crate::sensors::{SimDrive, SimEncoders, SimRanges};
 use crate::si;
 use crate::track::{Piece, Track};
-use fuzzypilot::geometry::{Point, Pose};
+use fuzzypilot::geometry::Point;
 use fuzzypilot::guide::{Path, PathError, Segment, Waypoint};
+use fuzzypilot::link::message::Cause;
 use fuzzypilot::params::{ParamError, Params};
 use fuzzypilot::ports::{Fault, Ports, RangeReading, WheelCounts, WheelEncoders};
 use fuzzypilot::signals::{Decision, StopReason, TickRecord};
 use fuzzypilot::tick::Robot;
+use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 /// One tick as an observer sees it: the robot's own record, and the truth at the moment it sensed.
@@ -39,6 +41,34 @@ pub struct Step<'a> {
     pub readings: &'a [RangeReading],
 }
 
+/// A control period in which no tick was computed.
+#[derive(Clone, Copy, Debug)]
+pub struct Gap {
+    /// Its time, s.
+    pub time: f64,
+    /// Why the robot is disarmed; none if it did not answer.
+    pub disarmed: Option<Cause>,
+    /// True pose.
+    pub truth: [f64; 3],
+    /// True wheel speeds.
+    pub wheels: [f64; 2],
+    /// Distance from the rim to the nearest obstacle, and which; infinite in an empty world.
+    pub clearance: (f64, Option<usize>),
+    /// True cross-track error.
+    pub cross_track: f64,
+    /// When the motors last stopped by themselves, s.
+    pub timed_out: Option<f64>,
+}
+
+/// A control period as an observer sees it.
+#[derive(Clone, Copy, Debug)]
+pub enum Period<'a> {
+    /// With a tick.
+    Tick(Step<'a>),
+    /// Without.
+    Gap(Gap),
+}
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
@@ -48,6 +78,10 @@ pub enum Ending {
     PathMissed,
     /// The time limit.
     TimeLimit,
+    /// The robot disarmed itself.
+    Disarmed,
+    /// The robot could not be reached any more.
+    LinkLost,
 }
 
 /// Why a run could not start: the library refuses the scenario's numbers.
@@ -136,40 +170,71 @@ pub fn check(scenario: &Scenario) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Runs a scenario to its end and shows every tick to `observe`.
+/// Runs a scenario to its end, the tick computed here, and shows every tick to `observe`.
 pub fn simulate(
     scenario: &Scenario,
     seed: u64,
     observe: &mut dyn FnMut(Step<'_>),
 ) -> Result<Ending, RunError> {
     match scenario.sensors.count {
-        8 => with_ring::<8>(scenario, seed, observe),
-        16 => with_ring::<16>(scenario, seed, observe),
-        32 => with_ring::<32>(scenario, seed, observe),
-        _ => with_ring::<64>(scenario, seed, observe),
+        8 => in_process::<8>(scenario, seed, observe),
+        16 => in_process::<16>(scenario, seed, observe),
+        32 => in_process::<32>(scenario, seed, observe),
+        _ => in_process::<64>(scenario, seed, observe),
     }
 }
 
-fn with_ring<const N: usize>(
+fn in_process<const N: usize>(
     scenario: &Scenario,
     seed: u64,
     observe: &mut dyn FnMut(Step<'_>),
 ) -> Result<Ending, RunError> {
     let params: Params<N> = params(scenario)?;
     let owned = OwnedPath::new(scenario);
-    let path = owned.view()?;
+    let mut controller = InProcess {
+        robot: Robot::new(params.clone(), si::pose(scenario.start)),
+        path: owned.view()?,
+    };
+    let driven = drive(scenario, seed, &params, &mut controller, &mut |period| {
+        if let Period::Tick(step) = period {
+            observe(step);
+        }
+    });
+    Ok(driven.unwrap_or_else(|never| match never {}))
+}
+
+/// Runs a scenario to its end, the tick computed by `controller`, and shows every control period to `observe`. `params`
+/// are the scenario's.
+///
+/// # Errors
+///
+/// The controller cannot go on. What the robot then does until it stands was shown, too.
+pub fn drive<const N: usize, C: Controller<N>>(
+    scenario: &Scenario,
+    seed: u64,
+    params: &Params<N>,
+    controller: &mut C,
+    observe: &mut dyn FnMut(Period<'_>),
+) -> Result<Ending, C::Error> {
     let mut bench = Bench::<N>::new(scenario, params, seed);
-    let ticks = (scenario.duration / scenario.robot.period).ceil() as u64;
-    for tick in 0..ticks {
-        let record = bench.step(scenario, &path, tick, observe);
+    let periods = (scenario.duration / scenario.robot.period).ceil() as u64;
+    for period in 0..periods {
+        let record = match bench.period(scenario, period, controller, observe) {
+            Ok(Some(record)) => record,
+            Ok(None) => continue,
+            Err(error) => {
+                bench.run_out(scenario, period, observe);
+                return Err(error);
+            }
+        };
         match record.decision {
             Decision::Stop(StopReason::PathEnd) => return Ok(Ending::PathEnd),
             Decision::Stop(StopReason::PathMissed) => return Ok(Ending::PathMissed),
             _ => {}
         }
-        if path.is_closed() && record.guidance.laps >= scenario.laps {
+        if scenario.path.closed && record.guidance.laps >= scenario.laps {
             // The cursor has been round; whether the robot was there, too, the last place tells.
-            let there = record.guidance.distance <= bench.robot.params().follower.end_radius;
+            let there = record.guidance.distance <= params.follower.end_radius;
             return Ok(if there {
                 Ending::PathEnd
             } else {
@@ -180,17 +245,55 @@ fn with_ring<const N: usize>(
     Ok(Ending::TimeLimit)
 }
 
-/// The simulated robot with everything around it.
-struct Bench<const N: usize> {
+/// The simulated robot's ports.
+pub type SimPorts<const N: usize> = Ports<SimDrive, SimEncoders, SimRanges<N>>;
+
+/// Who computes the tick.
+pub trait Controller<const N: usize> {
+    /// Why it cannot go on.
+    type Error;
+
+    /// Computes the tick at `time`, s, from what the ports tell.
+    fn tick(&mut self, time: f64, ports: &mut SimPorts<N>) -> Result<Reply, Self::Error>;
+}
+
+/// What came of a tick.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// It was computed.
+    Tick(Box<TickRecord>),
+    /// No answer: the motors go on with their last command, until they miss the next one.
+    Lost,
+    /// The robot is disarmed, and its wheels are commanded to stand.
+    Disarmed(Cause),
+}
+
+/// The library's tick, called.
+struct InProcess<'a, const N: usize> {
     robot: Robot<N>,
-    ports: Ports<SimDrive, SimEncoders, SimRanges<N>>,
+    path: Path<'a>,
+}
+
+impl<const N: usize> Controller<N> for InProcess<'_, N> {
+    type Error = Infallible;
+
+    fn tick(&mut self, _: f64, ports: &mut SimPorts<N>) -> Result<Reply, Infallible> {
+        Ok(Reply::Tick(Box::new(self.robot.tick(&self.path, ports))))
+    }
+}
+
+/// The simulated robot's body with everything around it.
+struct Bench<const N: usize> {
+    ports: SimPorts<N>,
     plant: Plant,
     beams: Vec<BeamView>,
     track: Track,
+    /// The last record's progress along the path, m.
+    progress: f64,
 }
 
 impl<const N: usize> Bench<N> {
-    fn new(scenario: &Scenario, params: Params<N>, seed: u64) -> Self {
+    fn new(scenario: &Scenario, params: &Params<N>, seed: u64) -> Self {
         let robot = &scenario.robot;
         let metres_per_count = f64::from(params.body.metres_per_count.to_bits()) / 4_294_967_296.0;
         let settings = PlantSettings {
@@ -202,9 +305,7 @@ impl<const N: usize> Bench<N> {
             latency: robot.latency,
             integrator: params.integrator,
         };
-        let start: Pose = si::pose(scenario.start);
         Self {
-            robot: Robot::new(params, start),
             ports: Ports {
                 drive: SimDrive::default(),
                 encoders: SimEncoders::new(metres_per_count, &scenario.noise, seed),
@@ -213,38 +314,103 @@ impl<const N: usize> Bench<N> {
             plant: Plant::new(settings, scenario.start),
             beams: beams(&scenario.sensors),
             track: scenario.path.track(),
+            progress: 0.0,
         }
     }
 
-    fn step(
+    /// One control period. The record of its tick, if there is one.
+    fn period<C: Controller<N>>(
         &mut self,
         scenario: &Scenario,
-        path: &Path<'_>,
-        tick: u64,
-        observe: &mut dyn FnMut(Step<'_>),
-    ) -> TickRecord {
-        let truth = self.plant.pose;
-        let at = [truth[0], truth[1]];
+        period: u64,
+        controller: &mut C,
+        observe: &mut dyn FnMut(Period<'_>),
+    ) -> Result<Option<Box<TickRecord>>, C::Error> {
+        let time = period as f64 * scenario.robot.period;
         self.ports.encoders.observe(self.plant.travel);
-        self.ports
-            .ranges
-            .observe(&scenario.world, &self.beams, truth);
-        let record = self.robot.tick(path, &mut self.ports);
-        observe(Step {
-            time: tick as f64 * scenario.robot.period,
-            record: &record,
+        let ranges = &mut self.ports.ranges;
+        ranges.observe(&scenario.world, &self.beams, self.plant.pose);
+        let reply = controller.tick(time, &mut self.ports)?;
+        let due = scenario.robot.period + COMMAND_TIMEOUT;
+        let record = match reply {
+            Reply::Tick(record) => {
+                self.progress = si::from_metres(record.guidance.progress);
+                let truth = self.plant.pose;
+                let counts = self.ports.encoders.counts();
+                observe(Period::Tick(Step {
+                    time,
+                    record: &record,
+                    truth,
+                    wheels: self.plant.wheels,
+                    clearance: clearance(scenario, truth),
+                    cross_track: self.track.cross_track([truth[0], truth[1]], self.progress),
+                    ranges: self.seen(),
+                    counts,
+                    readings: &self.ports.ranges.readings[..self.beams.len().min(N)],
+                }));
+                self.plant.command(self.ports.drive.command, due);
+                Some(record)
+            }
+            Reply::Lost => {
+                self.gap(scenario, time, None, observe);
+                None
+            }
+            Reply::Disarmed(cause) => {
+                self.gap(scenario, time, Some(cause), observe);
+                self.plant.command([0.0; 2], due);
+                None
+            }
+        };
+        self.plant.advance(scenario.robot.period);
+        Ok(record)
+    }
+
+    /// Nobody commands the motors any more: they stop by themselves.
+    fn run_out(
+        &mut self,
+        scenario: &Scenario,
+        from: u64,
+        observe: &mut dyn FnMut(Period<'_>),
+    ) {
+        let last = from + (LONGEST_RUN_OUT / scenario.robot.period).ceil() as u64;
+        for period in from..=last {
+            self.gap(scenario, period as f64 * scenario.robot.period, None, observe);
+            if self.plant.stands() {
+                break;
+            }
+            self.plant.advance(scenario.robot.period);
+        }
+    }
+
+    fn gap(
+        &self,
+        scenario: &Scenario,
+        time: f64,
+        disarmed: Option<Cause>,
+        observe: &mut dyn FnMut(Period<'_>),
+    ) {
+        let truth = self.plant.pose;
+        observe(Period::Gap(Gap {
+            time,
+            disarmed,
             truth,
             wheels: self.plant.wheels,
-            clearance: scenario.world.clearance(at, scenario.robot.radius),
-            cross_track: self
-                .track
-                .cross_track(at, si::from_metres(record.guidance.progress)),
-            ranges: &self.ports.ranges.seen,
-            counts: self.ports.encoders.counts(),
-            readings: &self.ports.ranges.readings,
-        });
-        self.plant.command(self.ports.drive.command);
-        self.plant.advance(scenario.robot.period);
-        record
+            clearance: clearance(scenario, truth),
+            cross_track: self.track.cross_track([truth[0], truth[1]], self.progress),
+            timed_out: self.plant.timed_out,
+        }));
     }
+
+    fn seen(&self) -> &[Option<f64>] {
+        let seen = &self.ports.ranges.seen;
+        &seen[..self.beams.len().min(seen.len())]
+    }
+}
+
+/// Longest time for which a robot that cannot be reached any more is watched, s.
+const LONGEST_RUN_OUT: f64 = 5.0;
+
+fn clearance(scenario: &Scenario, truth: [f64; 3]) -> (f64, Option<usize>) {
+    let at = [truth[0], truth[1]];
+    scenario.world.clearance(at, scenario.robot.radius)
 }
