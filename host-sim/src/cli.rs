@@ -3,6 +3,7 @@
 mod bench;
 mod errata;
 mod eval;
+mod hil;
 mod list;
 mod run;
 mod surface;
@@ -13,6 +14,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use host_sim::control::{
     AxisName, CoarseName, FineNn, InputName, IntegratorName, LawName, TablesName,
 };
+use host_sim::hil::Outage;
 use host_sim::run::RunError;
 use host_sim::scenario::{PathForm, Scenario, ScenarioError};
 use host_sim::track::Piece;
@@ -49,6 +51,8 @@ enum Command {
     Sweep(sweep::SweepArguments),
     /// Run a scenario, Experiment 1 by default, with every erratum printed and corrected, and print what each changes.
     Errata(errata::ErrataArguments),
+    /// Run a scenario with the tick on a robot: its firmware in QEMU, or a board on a serial port.
+    Hil(hil::HilArguments),
     /// Measure ticks per second of the library alone and of the whole simulation, on one core.
     BenchTick(bench::BenchArguments),
 }
@@ -63,6 +67,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
         Some(Command::Surface(arguments)) => surface::execute(&arguments),
         Some(Command::Sweep(arguments)) => sweep::execute(&arguments),
         Some(Command::Errata(arguments)) => errata::execute(&arguments),
+        Some(Command::Hil(arguments)) => hil::execute(&arguments),
         Some(Command::BenchTick(arguments)) => bench::execute(&arguments),
     }
 }
@@ -72,9 +77,20 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
 #[error("{0}")]
 pub struct BadInput(pub String);
 
-/// Whether the user's input was at fault.
-pub fn is_bad_input(error: &anyhow::Error) -> bool {
-    error.is::<BadInput>() || error.is::<ScenarioError>() || error.is::<RunError>()
+/// What the program ends with: 2 if the user's input was at fault, 3 if a robot at the other end of a link was.
+pub fn exit_code(error: &anyhow::Error) -> u8 {
+    match error.downcast_ref::<Outage>() {
+        // As a shell has it.
+        Some(Outage::Interrupted) => 130,
+        Some(_) => 3,
+        None if error.is::<BadInput>()
+            || error.is::<ScenarioError>()
+            || error.is::<RunError>() =>
+        {
+            2
+        }
+        None => 1,
+    }
 }
 
 /// Odometry of the simulated robot.

@@ -1,9 +1,10 @@
 //! host-sim: the desktop simulator around fuzzypilot's tick.
 //!
 //! A [`scenario`] says what is driven where; [`run`] closes the loop of [`plant`], [`sensors`] and the library's own
-//! `Robot::tick`; [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
+//! `Robot::tick`, or of a robot's behind a link ([`hil`]); [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
 
 pub mod control;
+pub mod hil;
 pub mod metrics;
 pub mod params;
 pub mod plant;

@@ -1,4 +1,5 @@
-//! host-sim's command line: arguments in, exit code out (0 done, 1 something went wrong, 2 bad input).
+//! host-sim's command line: arguments in, exit code out (0 done, 1 something went wrong, 2 bad
+//! input, 3 a robot that cannot be used or was lost).
 
 mod cli;
 
@@ -11,11 +12,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");
-            if cli::is_bad_input(&error) {
-                ExitCode::from(2)
-            } else {
-                ExitCode::FAILURE
-            }
+            ExitCode::from(cli::exit_code(&error))
         }
     }
 }

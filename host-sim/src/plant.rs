@@ -35,10 +35,12 @@ pub struct Plant {
     /// Commands on their way: time of effect, wheel speeds.
     pending: VecDeque<(f64, [f64; 2])>,
     command: [f64; 2],
+    /// When the last command was taken over, s.
+    commanded: f64,
     /// When the motors stop by themselves, s.
     timeout: f64,
-    /// When they last did, s.
-    pub timed_out: Option<f64>,
+    /// When they last did, s, and how long after their last command.
+    pub timed_out: Option<(f64, f64)>,
     time: f64,
 }
 
@@ -58,6 +60,7 @@ impl Plant {
             travel: [0.0; 2],
             pending: VecDeque::new(),
             command: [0.0; 2],
+            commanded: 0.0,
             timeout: f64::INFINITY,
             timed_out: None,
             time: 0.0,
@@ -68,6 +71,7 @@ impl Plant {
     pub fn command(&mut self, wheels: [f64; 2], timeout: f64) {
         self.pending
             .push_back((self.time + self.settings.latency, wheels));
+        self.commanded = self.time;
         self.timeout = self.time + timeout;
     }
 
@@ -116,7 +120,7 @@ impl Plant {
             self.pending.pop_front();
         }
         if self.time + dt > self.timeout + 1e-9 {
-            self.timed_out = Some(self.time);
+            self.timed_out = Some((self.time, self.time - self.commanded));
             self.timeout = f64::INFINITY;
             self.command = [0.0; 2];
             self.pending.clear();

@@ -56,8 +56,8 @@ pub struct Gap {
     pub clearance: (f64, Option<usize>),
     /// True cross-track error.
     pub cross_track: f64,
-    /// When the motors last stopped by themselves, s.
-    pub timed_out: Option<f64>,
+    /// When the motors last stopped by themselves, s, and how long after their last command.
+    pub timed_out: Option<(f64, f64)>,
 }
 
 /// A control period as an observer sees it.
@@ -402,8 +402,8 @@ impl<const N: usize> Bench<N> {
     }
 
     fn seen(&self) -> &[Option<f64>] {
-        let seen = &self.ports.ranges.seen;
-        &seen[..self.beams.len().min(seen.len())]
+        let ranges = &self.ports.ranges;
+        &ranges.seen[..ranges.mounted()]
     }
 }
 

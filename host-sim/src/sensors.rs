@@ -106,6 +106,7 @@ pub struct SimRanges<const N: usize> {
     pub readings: [RangeReading; N],
     /// Metres, for the recording; none where nothing was seen.
     pub seen: [Option<f64>; N],
+    mounted: usize,
     noise: Noise,
     rng: Pcg64Mcg,
 }
@@ -116,14 +117,21 @@ impl<const N: usize> SimRanges<N> {
         Self {
             readings: [RangeReading::fresh(Range::Invalid(Fault::NeverSeen)); N],
             seen: [None; N],
+            mounted: 0,
             noise: *noise,
             rng: Pcg64Mcg::seed_from_u64(seed ^ 0x0072_616e_6765_7300),
         }
     }
 
+    /// Number of sensors that have measured.
+    pub fn mounted(&self) -> usize {
+        self.mounted
+    }
+
     /// Measures from the true pose.
     pub fn observe(&mut self, world: &World, beams: &[BeamView], [x, y, heading]: [f64; 3]) {
         let (sin, cos) = libm::sincos(heading);
+        self.mounted = beams.len().min(N);
         for (i, beam) in beams.iter().enumerate().take(N) {
             let at = [
                 x + beam.x * cos - beam.y * sin,

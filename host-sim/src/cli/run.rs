@@ -6,10 +6,11 @@ use clap::Args;
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
 use host_sim::metrics::{Metrics, Summary};
 use host_sim::recording::Recording;
-use host_sim::run::simulate;
+use host_sim::run::{Ending, Period, simulate};
 use host_sim::scenario::Scenario;
 use host_sim::{plot, recorder, replay, ticks};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
@@ -60,28 +61,58 @@ pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
         check_file(file, &folder)?;
     }
 
-    let progress = progress(&scenario);
-    let mut metrics = Metrics::new(&scenario, arguments.seed);
-    let mut recording = recorder::start(&scenario, arguments.seed);
-    let mut rows = Vec::new();
-    progress.set_message("driving");
+    let mut watch = Watch::new(&scenario, arguments.seed);
     let ending = simulate(&scenario, arguments.seed, &mut |step| {
-        metrics.observe(&step);
-        recorder::record(&mut recording, &step);
-        rows.push(ticks::row(step.record));
-        if rows.len() % 64 == 0 {
-            progress.set_position(rows.len() as u64);
-        }
+        watch.period(&Period::Tick(step));
     })?;
-    let summary = metrics.finish(ending);
-    progress.set_message("drawing");
-    write(&folder, &summary, &recording, &rows)?;
+    let summary = watch.write(ending, &folder)?;
     if let Some(file) = &arguments.json {
         put(file, &json(&summary)?)?;
     }
-    progress.finish_and_clear();
     print(report(&scenario, &summary))?;
     print(format_args!("written: {}\n", folder.display()))
+}
+
+/// Watches a run for everything that is written of it.
+pub struct Watch {
+    metrics: Metrics,
+    recording: Recording,
+    rows: Vec<Vec<String>>,
+    progress: ProgressBar,
+}
+
+impl Watch {
+    pub fn new(scenario: &Scenario, seed: u64) -> Self {
+        let progress = progress(scenario);
+        progress.set_message("driving");
+        Self {
+            metrics: Metrics::new(scenario, seed),
+            recording: recorder::start(scenario, seed),
+            rows: Vec::new(),
+            progress,
+        }
+    }
+
+    pub fn period(&mut self, period: &Period<'_>) {
+        self.metrics.period(period);
+        recorder::period(&mut self.recording, period);
+        if let Period::Tick(step) = period {
+            self.rows.push(ticks::row(step.record));
+        }
+        let count = self.recording.frames.len();
+        if count % 64 == 0 {
+            self.progress.set_position(count as u64);
+        }
+    }
+
+    /// Draws and writes everything.
+    pub fn write(self, ending: Ending, folder: &Path) -> anyhow::Result<Summary> {
+        let summary = self.metrics.finish(ending);
+        self.progress.set_message("drawing");
+        write(folder, &summary, &self.recording, &self.rows)?;
+        self.progress.finish_and_clear();
+        Ok(summary)
+    }
 }
 
 /// Refuses early what could not be written after the run.
@@ -109,7 +140,7 @@ fn progress(scenario: &Scenario) -> ProgressBar {
     ProgressBar::with_draw_target(Some(ticks), target).with_style(style)
 }
 
-fn json(summary: &Summary) -> anyhow::Result<Vec<u8>> {
+pub fn json(summary: &impl Serialize) -> anyhow::Result<Vec<u8>> {
     let mut text = serde_json::to_string_pretty(summary)?;
     text.push('\n');
     Ok(text.into_bytes())
@@ -139,7 +170,8 @@ const STORY: [(&str, &str, u64, Option<u64>); 3] = [
     ("Obs6", "left", 49, None),
 ];
 
-fn report(scenario: &Scenario, summary: &Summary) -> String {
+/// The figures of a run as tables.
+pub fn report(scenario: &Scenario, summary: &Summary) -> String {
     let mut text = format!(
         "{}: {} (seed {}), {} ticks, {:.1} s\n",
         summary.scenario, summary.variant, summary.seed, summary.ticks, summary.sim_time_s
