@@ -55,14 +55,42 @@ pub enum Outage {
         /// What the system or the emulator says.
         why: String,
     },
-    /// Nothing was heard for [`LONGEST_SILENCE`].
+    /// Nothing was heard for [`LONGEST_SILENCE`] in the set-up.
     #[error(
-        "{wire}: no answer for {} ms; a robot with fuzzypilot's firmware answers at once: is it on, and is the baud rate right?",
+        "{wire}: no answer for {} ms: is it on, is fuzzypilot's firmware in it, is the baud rate right?",
         LONGEST_SILENCE.as_millis()
     )]
+    Mute {
+        /// What it leads to.
+        wire: String,
+    },
+    /// Nothing was heard for [`LONGEST_SILENCE`] in the run.
+    #[error("{wire}: no answer for {} ms at {time:.2} s of the run", LONGEST_SILENCE.as_millis())]
     Silent {
         /// What it leads to.
         wire: String,
+        /// When, s.
+        time: f64,
+    },
+    /// It is heard, but its records are not.
+    #[error("{wire}: {ticks} ticks in a row were lost until {time:.2} s of the run")]
+    Deaf {
+        /// What it leads to.
+        wire: String,
+        /// How many.
+        ticks: u32,
+        /// When, s.
+        time: f64,
+    },
+    /// Hostile frames have had an effect.
+    #[error("{wire}: after {frames} hostile frames: {what}")]
+    Fell {
+        /// What it leads to.
+        wire: String,
+        /// How many it stood.
+        frames: u64,
+        /// The effect.
+        what: String,
     },
     /// Another protocol.
     #[error("{wire}: it speaks protocol version {found}; allowed is {VERSION}: flash the firmware of this host-sim")]

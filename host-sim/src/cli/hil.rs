@@ -6,6 +6,7 @@ use anyhow::Context;
 use clap::{ArgGroup, Args};
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
 use host_sim::hil::fault::{Fault, Faulty};
+use host_sim::hil::hostile::{HostileReport, attack};
 use host_sim::hil::line::INTERRUPTED;
 use host_sim::hil::local::Local;
 use host_sim::hil::report::{LinkReport, Received};
@@ -58,6 +59,15 @@ pub struct HilArguments {
         value_parser = clap::value_parser!(u32).range(1..=1000)
     )]
     rearm: Option<u32>,
+    /// Instead of a run: send N hostile frames (random, truncated, with bits flipped, played back) and see that the robot
+    /// neither moves nor resets, and hears good ones again.
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = whole(1, 100_000_000),
+        conflicts_with_all = ["fault", "rearm"]
+    )]
+    hostile: Option<u64>,
 }
 
 pub fn execute(arguments: &HilArguments) -> anyhow::Result<()> {
@@ -71,6 +81,15 @@ pub fn execute(arguments: &HilArguments) -> anyhow::Result<()> {
     ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed))
         .context("signals: cannot be handled")?;
     let wire = connect(arguments)?;
+    if let Some(count) = arguments.hostile {
+        let report = attack(&scenario, arguments.seed, wire, count).map_err(flat)?;
+        std::fs::create_dir_all(&folder)
+            .with_context(|| format!("{}: cannot be created", folder.display()))?;
+        put(&folder.join("hostile.json"), &json(&report)?)?;
+        log(&folder, &report.log)?;
+        print(stood(&report))?;
+        return print(format_args!("written: {}\n", folder.display()));
+    }
 
     let mut watch = Watch::new(&scenario, arguments.seed);
     let driven = host_sim::hil::run(
@@ -80,19 +99,30 @@ pub fn execute(arguments: &HilArguments) -> anyhow::Result<()> {
         arguments.rearm,
         &mut |period| watch.period(period),
     )
-    .map_err(|error| match error {
-        HilError::Run(error) => anyhow::Error::from(error),
-        HilError::Outage(outage) => outage.into(),
-    })?;
+    .map_err(flat)?;
     let summary = watch.write(driven.ending, &folder)?;
     put(&folder.join("link.json"), &json(&driven.report)?)?;
-    if !driven.log.is_empty() {
-        put(&folder.join("target.log"), &driven.log)?;
-    }
+    log(&folder, &driven.log)?;
     print(report(&scenario, &summary))?;
     print(link(&driven.report))?;
     print(format_args!("written: {}\n", folder.display()))?;
     driven.outage.map_or(Ok(()), |outage| Err(outage.into()))
+}
+
+/// The error behind, by which the exit code goes.
+fn flat(error: HilError) -> anyhow::Error {
+    match error {
+        HilError::Run(error) => error.into(),
+        HilError::Outage(outage) => outage.into(),
+    }
+}
+
+/// Writes what the robot has logged, if it can be had.
+fn log(folder: &Path, log: &[u8]) -> anyhow::Result<()> {
+    match log {
+        [] => Ok(()),
+        log => put(&folder.join("target.log"), log),
+    }
 }
 
 /// Opens the wire that is asked for.
@@ -206,6 +236,51 @@ fn link(report: &LinkReport) -> String {
         text += &format!("{:>10}    and so on: see link.json\n", "…");
     }
     text
+}
+
+/// What hostile frames came to.
+fn stood(report: &HostileReport) -> String {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table.set_header(["hostile frames", "value"]);
+    let r = &report.received_by_target;
+    let rows = [
+        ("robot", report.target.clone()),
+        (
+            "sent",
+            format!(
+                "{} random, {} truncated, {} with bits flipped, {} played back, in {:.1} s",
+                report.random, report.truncated, report.flipped, report.replayed, report.seconds
+            ),
+        ),
+        (
+            "the robot counts",
+            format!(
+                "{} good, {} overlong, {} truncated, {} corrupt, {} of another version",
+                r.good, r.overlong, r.truncated, r.corrupt, r.other_version
+            ),
+        ),
+        ("moved, was armed", "never".to_owned()),
+        (
+            "reset",
+            format!(
+                "never: {:.1} s to {:.1} s since its start",
+                f64::from(report.uptime_ms.0) / 1e3,
+                f64::from(report.uptime_ms.1) / 1e3
+            ),
+        ),
+        (
+            "heard again",
+            format!(
+                "after {} good frames at most, in {} looks; then set up, armed and stopped",
+                report.recovered_after, report.checks
+            ),
+        ),
+    ];
+    for (name, value) in rows {
+        table.add_row([name.to_owned(), value]);
+    }
+    format!("{table}\n")
 }
 
 /// Events that are printed.

@@ -207,14 +207,6 @@ impl Line {
         (self.heard + LONGEST_SILENCE).saturating_sub(self.wire.now())
     }
 
-    /// Refuses to go on with a robot that has been silent for too long.
-    pub fn check_silence(&self) -> Result<(), Outage> {
-        match self.patience() {
-            Duration::ZERO => Err(Outage::Silent { wire: self.name() }),
-            _ => Ok(()),
-        }
-    }
-
     fn gone(&mut self, error: &std::io::Error) -> Outage {
         Outage::Gone {
             wire: self.wire.name(),
@@ -326,7 +318,7 @@ impl Line {
         self.listen();
         match self.try_ask(message, LONGEST_SILENCE)? {
             Some(answer) => Ok(answer),
-            None => Err(Outage::Silent { wire: self.name() }),
+            None => Err(Outage::Mute { wire: self.name() }),
         }
     }
 }

@@ -62,9 +62,9 @@ pub struct LinkReport {
     pub disarmed_ticks: u64,
     /// Simulated time, s.
     pub sim_time_s: f64,
-    /// Time of the set-up, s by the wire's clock.
+    /// Time that the set-up took, s.
     pub setup_s: f64,
-    /// Time of the run, s by the wire's clock.
+    /// Time that the run took, s.
     pub run_s: f64,
     /// Simulated time by the run's.
     pub times_real_time: f64,

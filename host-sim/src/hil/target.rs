@@ -14,7 +14,7 @@ use fuzzypilot::link::settings::{self, MOUNTS};
 use fuzzypilot::params::Params;
 use fuzzypilot::ports::{RangeReading, RangeSensors, Side, WheelDrive, WheelEncoders};
 use fuzzypilot::signals::TickRecord;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// A record that has not come by then is asked for by a status: answers come in the order of questions.
 const PROMPT: Duration = Duration::from_millis(100);
@@ -27,6 +27,9 @@ const SILENT: Duration = Duration::from_millis(50);
 
 /// So many good answers in a row of a disarmed robot, and its link counts as recovered.
 pub const RECOVERED: u32 = 5;
+
+/// More ticks in a row are not lost by chance.
+const MOST_LOST: u32 = 100;
 
 /// Sets up again, from the beginning, after a conversation that has got out of step, at most this often.
 const SETUPS: u32 = 5;
@@ -45,11 +48,13 @@ pub struct Target {
     disarmed: Option<(f64, Cause)>,
     /// Good answers in a row.
     good: u32,
+    /// Lost ticks in a row.
+    lost: u32,
     /// It owes the answer to this question, the last one: which tick is its next is not known.
     owed: Option<u8>,
     set_up: Duration,
     setup_trips: u64,
-    begun: Duration,
+    begun: Instant,
     /// What happened.
     report: LinkReport,
 }
@@ -266,7 +271,7 @@ impl Target {
         start: Pose,
         rearm: Option<u32>,
     ) -> Result<Self, Outage> {
-        let from = line.now();
+        let from = Instant::now();
         let mut attempt = 1;
         let (welcome, state) = loop {
             match Self::try_set_up(&mut line, params, path, start) {
@@ -275,7 +280,7 @@ impl Target {
             }
         };
         let report = LinkReport::new(line.name(), &welcome);
-        let begun = line.now();
+        let begun = Instant::now();
         Ok(Self {
             rearm,
             period: 0,
@@ -285,8 +290,9 @@ impl Target {
             uptime_ms: state.uptime_ms,
             disarmed: None,
             good: 0,
+            lost: 0,
             owed: None,
-            set_up: begun.saturating_sub(from),
+            set_up: begun.duration_since(from),
             setup_trips: line.traffic.round_trips,
             begun,
             report,
@@ -310,10 +316,17 @@ impl Target {
         }
     }
 
+    /// Stops the robot, and gives the line back.
+    pub fn into_line(mut self) -> Line {
+        // The next hello disarms it, too.
+        let _ = self.line.try_ask(&ToTarget::Stop, FIRST);
+        self.line
+    }
+
     /// Ends the session as well as can be; what went over the link, and what the robot has logged.
     pub fn finish(mut self, period_s: f64) -> (LinkReport, Vec<u8>) {
         let sim_time_s = self.period as f64 * period_s;
-        let run = self.line.now().saturating_sub(self.begun);
+        let run = self.begun.elapsed();
         let trips = self.line.traffic.round_trips - self.setup_trips;
         self.report.time(self.set_up, run, trips, sim_time_s);
         // A robot that does not hear it any more disarms itself.
@@ -353,14 +366,28 @@ impl Target {
     }
 
     /// The answer to a tick did not come.
-    fn lost(&mut self, time: f64, what: &str) -> Reply {
+    fn lost(&mut self, time: f64, what: &str) -> Result<Reply, Outage> {
         // One event tells of several in a row.
-        if self.good > 0 || self.period == 1 {
+        if self.lost == 0 {
             self.report.event(time, what);
         }
         self.good = 0;
+        self.lost += 1;
         self.report.lost_ticks += 1;
-        Reply::Lost
+        match self.lost {
+            0..=MOST_LOST => Ok(Reply::Lost),
+            ticks => Err(Outage::Deaf {
+                wire: self.line.name(),
+                ticks,
+                time,
+            }),
+        }
+    }
+
+    /// An answer has come.
+    fn answered(&mut self) {
+        self.good += 1;
+        self.lost = 0;
     }
 
     /// Arms a robot again that the link has disarmed, if that is wanted and it is time. An error says that it is not.
@@ -404,7 +431,11 @@ impl Target {
             }
             Some(Answer::Refused(why)) => return Err(self.refused("to be armed again", why, time)),
             Some(other) => return Err(confused(self.line.name(), "status", &other)),
-            None => self.line.check_silence()?,
+            None if self.line.patience().is_zero() => {
+                let wire = self.line.name();
+                return Err(Outage::Silent { wire, time });
+            }
+            None => {}
         }
         if was.is_some() && self.disarmed.is_none() {
             self.report.event(time, "armed again");
@@ -450,7 +481,7 @@ impl Target {
             let Some((answered, answer)) = self.line.next(until)? else {
                 if self.line.now() >= end {
                     self.owed = probe;
-                    return Ok(self.lost(time, "no answer"));
+                    return self.lost(time, "no answer");
                 }
                 // Answers come in the order of questions: this one's tells that the record will not come.
                 match probe {
@@ -472,7 +503,7 @@ impl Target {
                 Answer::State(state) if answered == sequence => {
                     self.line.traffic.round_trips += 1;
                     self.learn(&state, time)?;
-                    self.good += 1;
+                    self.answered();
                     self.report.disarmed_ticks += 1;
                     let (_, cause) = self.disarmed.unwrap_or((time, state.cause));
                     return Ok(Reply::Disarmed(cause));
@@ -480,7 +511,13 @@ impl Target {
                 Answer::State(state) if probe == Some(answered) => {
                     self.line.traffic.round_trips += 1;
                     self.learn(&state, time)?;
-                    return Ok(self.lost(time, "answer lost"));
+                    return self.lost(time, "answer lost");
+                }
+                // Another frame has overtaken it: it is not acted upon. The status tells the rest.
+                Answer::Refused(Why::Replayed) if answered == sequence => {
+                    if probe.is_none() {
+                        until = self.line.now();
+                    }
                 }
                 Answer::Refused(why) if answered == sequence || probe == Some(answered) => {
                     let what = format!("tick {} at {time:.2} s", self.next_tick);
@@ -503,7 +540,7 @@ impl Target {
             });
         };
         self.next_tick = self.next_tick.wrapping_add(1);
-        self.good += 1;
+        self.answered();
         self.report.ticks += 1;
         Ok(Reply::Tick(Box::new(record)))
     }
@@ -532,7 +569,7 @@ impl Target {
             self.rearm(time)?;
         }
         if self.owed.is_some() {
-            return Ok(self.lost(time, "no answer"));
+            return self.lost(time, "no answer");
         }
         let sequence = self.send_inputs(time, counts, readings)?;
         self.await_record(sequence, time)
