@@ -83,10 +83,7 @@ pub fn exit_code(error: &anyhow::Error) -> u8 {
         // As a shell has it.
         Some(Outage::Interrupted) => 130,
         Some(_) => 3,
-        None if error.is::<BadInput>()
-            || error.is::<ScenarioError>()
-            || error.is::<RunError>() =>
-        {
+        None if error.is::<BadInput>() || error.is::<ScenarioError>() || error.is::<RunError>() => {
             2
         }
         None => 1,

@@ -34,7 +34,7 @@ use target::Target;
 use wire::Wire;
 
 /// No robot is silent for longer than this without the run being ended.
-pub const LONGEST_SILENCE: Duration = Duration::from_millis(1800);
+pub const LONGEST_SILENCE: Duration = Duration::from_millis(1500);
 
 /// Why a robot at the other end of a link is of no use (any more).
 #[derive(Debug, thiserror::Error)]
@@ -93,7 +93,9 @@ pub enum Outage {
         what: String,
     },
     /// Another protocol.
-    #[error("{wire}: it speaks protocol version {found}; allowed is {VERSION}: flash the firmware of this host-sim")]
+    #[error(
+        "{wire}: it speaks protocol version {found}; allowed is {VERSION}: flash the firmware of this host-sim"
+    )]
     Protocol {
         /// What it leads to.
         wire: String,

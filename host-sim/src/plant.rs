@@ -39,7 +39,7 @@ pub struct Plant {
     commanded: f64,
     /// When the motors stop by themselves, s.
     timeout: f64,
-    /// When they last did, s, and how long after their last command.
+    /// When they last did so while they were driven, s, and how long after their last command.
     pub timed_out: Option<(f64, f64)>,
     time: f64,
 }
@@ -120,7 +120,10 @@ impl Plant {
             self.pending.pop_front();
         }
         if self.time + dt > self.timeout + 1e-9 {
-            self.timed_out = Some((self.time, self.time - self.commanded));
+            let driven = self.command != [0.0; 2] || !self.pending.is_empty();
+            if driven {
+                self.timed_out = Some((self.time, self.time - self.commanded));
+            }
             self.timeout = f64::INFINITY;
             self.command = [0.0; 2];
             self.pending.clear();

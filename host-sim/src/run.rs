@@ -56,7 +56,7 @@ pub struct Gap {
     pub clearance: (f64, Option<usize>),
     /// True cross-track error.
     pub cross_track: f64,
-    /// When the motors last stopped by themselves, s, and how long after their last command.
+    /// When the motors last stopped by themselves while they were driven, s, and how long after their last command.
     pub timed_out: Option<(f64, f64)>,
 }
 
@@ -366,15 +366,15 @@ impl<const N: usize> Bench<N> {
     }
 
     /// Nobody commands the motors any more: they stop by themselves.
-    fn run_out(
-        &mut self,
-        scenario: &Scenario,
-        from: u64,
-        observe: &mut dyn FnMut(Period<'_>),
-    ) {
+    fn run_out(&mut self, scenario: &Scenario, from: u64, observe: &mut dyn FnMut(Period<'_>)) {
         let last = from + (LONGEST_RUN_OUT / scenario.robot.period).ceil() as u64;
         for period in from..=last {
-            self.gap(scenario, period as f64 * scenario.robot.period, None, observe);
+            self.gap(
+                scenario,
+                period as f64 * scenario.robot.period,
+                None,
+                observe,
+            );
             if self.plant.stands() {
                 break;
             }

@@ -29,10 +29,10 @@ pub struct HilArguments {
     #[arg(long)]
     local: bool,
     /// Firmware image for QEMU; the one that `cargo fw` has built when left out.
-    #[arg(long, value_name = "FILE", requires = "qemu")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["port", "local"])]
     image: Option<PathBuf>,
     /// Baud rate of the port.
-    #[arg(long, default_value_t = BAUD, requires = "port")]
+    #[arg(long, default_value_t = BAUD, conflicts_with_all = ["qemu", "local"])]
     baud: u32,
     /// Built-in scenario (see `host-sim list`) or a TOML file.
     #[arg(long, value_name = "NAME", default_value = "experiment-1")]

@@ -49,8 +49,9 @@ impl Wire for Local {
         for byte in frame {
             self.now += BYTE;
             let now_us = self.now.as_micros() as u32;
-            self.pilot
-                .receive(*byte, now_us, &mut |frame: &[u8]| self.answers.extend(frame));
+            self.pilot.receive(*byte, now_us, &mut |frame: &[u8]| {
+                self.answers.extend(frame)
+            });
         }
         Ok(())
     }

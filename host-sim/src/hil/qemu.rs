@@ -85,7 +85,9 @@ impl Qemu {
     /// There is no emulator ([`ErrorKind::NotFound`]), or it does not start.
     pub fn start(image: &Path) -> io::Result<Self> {
         let begin = Instant::now();
-        let nanos = std::time::UNIX_EPOCH.elapsed().map_or(0, |d| d.subsec_nanos());
+        let nanos = std::time::UNIX_EPOCH
+            .elapsed()
+            .map_or(0, |d| d.subsec_nanos());
         let name = format!("fuzzypilot-{}-{nanos}.sock", std::process::id());
         let socket = std::env::temp_dir().join(name);
         let mut link = std::ffi::OsString::from("socket,id=hil,server=on,wait=off,path=");

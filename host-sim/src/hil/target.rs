@@ -101,7 +101,11 @@ fn confused(wire: String, what: &str, answer: &Answer) -> Outage {
         other => Outage::Confused {
             wire,
             what: what.to_owned(),
-            found: format!("{other:?}"),
+            found: match other {
+                // One's own question, for example.
+                Answer::Unknown => "a frame that is no answer".to_owned(),
+                other => format!("{other:?}"),
+            },
         },
     }
 }
@@ -134,7 +138,11 @@ pub fn check<const N: usize>(
             ("segments of a path", welcome.segments, segments.len())
         }
     };
-    let sensors = ("range sensors", welcome.ranges.into(), params.ring.mounts.len());
+    let sensors = (
+        "range sensors",
+        welcome.ranges.into(),
+        params.ring.mounts.len(),
+    );
     for (what, room, needed) in [sensors, (what, room.into(), needed)] {
         if needed > room {
             return Err(Outage::Room {
@@ -423,7 +431,10 @@ impl Target {
     fn settle(&mut self, sequence: u8, time: f64, patience: Duration) -> Result<(), Outage> {
         self.owed = Some(sequence);
         let was = self.disarmed;
-        match self.line.wait(sequence, patience.min(self.line.patience()))? {
+        match self
+            .line
+            .wait(sequence, patience.min(self.line.patience()))?
+        {
             Some(Answer::State(state)) => self.learn(&state, time)?,
             // It has disarmed itself once more meanwhile.
             Some(Answer::Refused(Why::Token)) => {

@@ -232,7 +232,10 @@ impl Budgets {
             }
             table += "\n";
         }
-        table += &format!("\nCounted in QEMU; the M4F image compiled for size, the M0 one for speed, by {}.\n", compiler()?);
+        table += &format!(
+            "\nCounted in QEMU; the M4F image compiled for size, the M0 one for speed, by {}.\n",
+            compiler()?
+        );
         Ok(table)
     }
 }
