@@ -34,7 +34,7 @@ use target::Target;
 use wire::Wire;
 
 /// No robot is silent for longer than this without the run being ended.
-pub const LONGEST_SILENCE: Duration = Duration::from_millis(1500);
+pub const LONGEST_SILENCE: Duration = Duration::from_millis(1700);
 
 /// Why a robot at the other end of a link is of no use (any more).
 #[derive(Debug, thiserror::Error)]
@@ -214,9 +214,7 @@ pub fn run(
     let params: Params<SENSORS> = params(scenario).map_err(RunError::from)?;
     let path = OwnedPath::new(scenario);
     let start = si::pose(scenario.start);
-    // Not the first number of another session.
-    let line = Line::new(wire, seed as u8);
-    let mut target = Target::set_up(line, &params, &path, start, rearm)?;
+    let mut target = Target::set_up(Line::new(wire), &params, &path, start, rearm)?;
     let period = scenario.robot.period;
     let mut stops: Vec<(f64, f64)> = Vec::new();
     let driven = drive(scenario, seed, &params, &mut target, &mut |seen| {

@@ -313,12 +313,12 @@ fn what_was_driven_is_written_when_the_robot_is_lost() {
         (
             "silence@60+100000",
             "link lost",
-            &["no answer for 1500 ms at 3"],
+            &["no answer for 1700 ms at 3"],
         ),
         (
             "from-corrupt@60+100000",
             "link lost",
-            &["no answer for 1500 ms at 3"],
+            &["no answer for 1700 ms at 3"],
         ),
     ] {
         let args = [
@@ -590,7 +590,7 @@ mod port {
         let cases: Vec<(Robot, &[&str])> = vec![
             (
                 Box::new(|_| Some(Vec::new())),
-                &["no answer for 1500 ms", "baud"],
+                &["no answer for 1700 ms", "baud"],
             ),
             (
                 Box::new(|bytes| Some(bytes.to_vec())),
@@ -598,7 +598,7 @@ mod port {
             ),
             (
                 Box::new(|_| Some(b"login: ".to_vec())),
-                &["no answer for 1500 ms"],
+                &["no answer for 1700 ms"],
             ),
             (
                 welcome([9, 8, 7], 64, 32),
@@ -635,7 +635,7 @@ mod port {
             (until(SOME, Box::new(|_| None)), &["link is gone"]),
             (
                 until(SOME, Box::new(|_| Some(Vec::new()))),
-                &["no answer for 1500 ms at"],
+                &["no answer for 1700 ms at"],
             ),
             (until(SOME, pilot()), &["has restarted at", "switched on"]),
         ];
@@ -853,7 +853,7 @@ mod qemu {
                 "-KILL",
                 &["link is gone", "emulator has ended (signal 9)"][..],
             ),
-            ("-STOP", &["no answer for 1500 ms at"]),
+            ("-STOP", &["no answer for 1700 ms at"]),
         ] {
             let dir = tempdir().unwrap();
             let running = Running::start(dir.path(), &image);

@@ -100,7 +100,7 @@ impl Watch {
             self.rows.push(ticks::row(step.record));
         }
         let count = self.recording.frames.len();
-        if count % 64 == 0 {
+        if count.is_multiple_of(64) {
             self.progress.set_position(count as u64);
         }
     }

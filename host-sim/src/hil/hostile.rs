@@ -91,7 +91,7 @@ pub fn attack(
     let start = si::pose(scenario.start);
     let begin = Instant::now();
 
-    let mut line = Line::new(wire, seed as u8);
+    let mut line = Line::new(wire);
     line.tape = Some(Vec::new());
     let mut target = Target::set_up(line, &params, &path, start, None)?;
     let short = Scenario {
@@ -218,12 +218,8 @@ impl Attack {
         if state.armed {
             return Err(self.failed("it is armed".to_owned()));
         }
-        let reset = matches!(
-            state.cause,
-            Cause::Boot | Cause::Brownout | Cause::Watchdog | Cause::Panic | Cause::HardFault
-        );
         let back = state.uptime_ms.wrapping_sub(self.report.uptime_ms.1) > i32::MAX as u32;
-        if reset || back {
+        if back || target::is_reset(state.cause) {
             return Err(self.failed(format!("it was reset: {}", state.cause)));
         }
         self.report.uptime_ms.1 = state.uptime_ms;

@@ -3,7 +3,7 @@
 use super::wire::Wire;
 use super::{LONGEST_SILENCE, Outage};
 use fuzzypilot::link::frame::{self, Counters, Decoder, FrameError, MAX_FRAME};
-use fuzzypilot::link::message::{Cause, PART_BYTES, ToHost, ToTarget, Why};
+use fuzzypilot::link::message::{Cause, ToHost, ToTarget, Why};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -125,13 +125,6 @@ impl From<ToHost<'_>> for Answer {
     }
 }
 
-impl Answer {
-    /// Whether it is a part of a record as they are numbered and measured.
-    pub fn is_part(&self) -> bool {
-        matches!(self, Self::Part(0..3, bytes) if bytes.len() == PART_BYTES)
-    }
-}
-
 /// What went over the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
@@ -167,14 +160,14 @@ pub struct Line {
 }
 
 impl Line {
-    /// Begins with sequence number `first`.
-    pub fn new(wire: Box<dyn Wire>, first: u8) -> Self {
+    /// Over a wire, from now on.
+    pub fn new(wire: Box<dyn Wire>) -> Self {
         let heard = wire.now();
         Self {
             wire,
             decoder: Decoder::new(),
             inbox: VecDeque::new(),
-            sequence: first,
+            sequence: 0,
             last: Vec::new(),
             heard,
             traffic: Traffic::default(),

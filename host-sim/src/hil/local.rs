@@ -50,7 +50,7 @@ impl Wire for Local {
             self.now += BYTE;
             let now_us = self.now.as_micros() as u32;
             self.pilot.receive(*byte, now_us, &mut |frame: &[u8]| {
-                self.answers.extend(frame)
+                self.answers.extend(frame);
             });
         }
         Ok(())

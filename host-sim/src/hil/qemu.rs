@@ -3,6 +3,7 @@
 use super::wire::{Patient, Stream, Wire};
 use std::io::{self, ErrorKind, Read};
 use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -100,6 +101,8 @@ impl Qemu {
             .arg(link)
             .args(["-serial", "chardev:hil", "-kernel"])
             .arg(image)
+            // A terminal's Ctrl-C is for this program, which ends the emulator.
+            .process_group(0)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

@@ -337,8 +337,12 @@ impl Target {
         let run = self.begun.elapsed();
         let trips = self.line.traffic.round_trips - self.setup_trips;
         self.report.time(self.set_up, run, trips, sim_time_s);
-        // A robot that does not hear it any more disarms itself.
-        if let Ok(Some(Answer::State(state))) = self.line.try_ask(&ToTarget::Stop, 2 * PROMPT) {
+        // A robot that does not hear it any more disarms itself, and is not waited for.
+        let patience = match self.owed {
+            None => 2 * PROMPT,
+            Some(_) => Duration::ZERO,
+        };
+        if let Ok(Some(Answer::State(state))) = self.line.try_ask(&ToTarget::Stop, patience) {
             self.report.stack_bytes = state.stack;
             self.report.received_by_target = state.received.into();
         }
@@ -351,7 +355,8 @@ impl Target {
     /// Takes over what the robot says of itself.
     fn learn(&mut self, state: &State, time: f64) -> Result<(), Outage> {
         // Its clock wraps after seven weeks.
-        if state.uptime_ms.wrapping_sub(self.uptime_ms) > i32::MAX as u32 {
+        let back = state.uptime_ms.wrapping_sub(self.uptime_ms) > i32::MAX as u32;
+        if back || (!state.armed && is_reset(state.cause)) {
             return Err(Outage::Restarted {
                 wire: self.line.name(),
                 time,
@@ -585,6 +590,14 @@ impl Target {
         let sequence = self.send_inputs(time, counts, readings)?;
         self.await_record(sequence, time)
     }
+}
+
+/// Whether a robot that was disarmed for this cause has started anew.
+pub fn is_reset(cause: Cause) -> bool {
+    matches!(
+        cause,
+        Cause::Boot | Cause::Brownout | Cause::Watchdog | Cause::Panic | Cause::HardFault
+    )
 }
 
 /// The record, when all its parts are there.
