@@ -1,4 +1,5 @@
 #![no_std]
+#![forbid(unsafe_code)]
 //! A fuzzy controller that drives a differential robot along a path and around obstacles: `no_std`, no allocation,
 //! fixed point, the same bits on every architecture.
 //!
@@ -56,6 +57,7 @@
 
 pub mod behaviour;
 pub mod drive;
+pub mod firmware;
 pub mod fuzzy;
 pub mod geometry;
 pub mod guard;

@@ -7,9 +7,11 @@ use crate::guard::guard;
 use crate::guide::{Cursor, Path, guide};
 use crate::localise::Localiser;
 use crate::params::{ParamError, Params};
-use crate::ports::{Ports, RangeReading, RangeSensors, Side, WheelDrive, WheelEncoders};
+use crate::ports::{
+    Fault, Ports, RangeReading, RangeSensors, Side, WheelCounts, WheelDrive, WheelEncoders,
+};
 use crate::sense::{Odometer, sense_ranges};
-use crate::signals::{Behaviour, Decision, Sensed, TickRecord, Twist};
+use crate::signals::{Behaviour, Decision, Sensed, TickRecord, Travel, Twist};
 use crate::supervisor::{Situation, SupervisorState};
 use crate::units::MetresPerSecond;
 
@@ -153,20 +155,46 @@ impl<const N: usize> Robot<N> {
         R: RangeSensors,
         P: Probe,
     {
-        let p = &self.params;
         let counts = ports.encoders.counts();
-        let mounted = p.ring.mounts.len().min(N);
+        let mounted = self.params.ring.mounts.len().min(N);
         let readings = self.readings.get_mut(..mounted).unwrap_or_default();
         readings.fill(RangeReading::NEVER_SEEN);
         ports.ranges.read(readings);
         probe.mark(Stage::Read);
 
+        let travel = self.sense(counts, mounted, probe);
+        let mut record = self.decide(path, travel, probe);
+
+        let left = ports.drive.set_speed(Side::Left, record.wheels.left);
+        let right = ports.drive.set_speed(Side::Right, record.wheels.right);
+        record.drive_fault = left.is_err() || right.is_err();
+        record
+    }
+
+    // The stages, in two functions that know no ports: so they are in an image once, and the stack that sensing needs is
+    // free again when the others begin.
+
+    /// Sense, localise.
+    fn sense<P: Probe>(
+        &mut self,
+        counts: Result<WheelCounts, Fault>,
+        mounted: usize,
+        probe: &mut P,
+    ) -> Travel {
+        let p = &self.params;
         let travel = self.odometer.travel(counts);
-        let sensed = &mut self.sensed;
-        sense_ranges(&p.ring, readings, self.last.linear, sensed);
+        let readings = self.readings.get(..mounted).unwrap_or_default();
+        sense_ranges(&p.ring, readings, self.last.linear, &mut self.sensed);
         probe.mark(Stage::Sense);
-        let pose = self.localiser.advance(&p.body, p.integrator, travel);
+        self.localiser.advance(&p.body, p.integrator, travel);
         probe.mark(Stage::Localise);
+        travel
+    }
+
+    /// Guide, supervise, behave, guard, drive.
+    fn decide<P: Probe>(&mut self, path: &Path<'_>, travel: Travel, probe: &mut P) -> TickRecord {
+        let p = &self.params;
+        let (sensed, pose) = (&self.sensed, self.localiser.pose());
         let timing = (p.period, p.latency);
         let guidance = guide(
             &p.follower,
@@ -210,9 +238,6 @@ impl<const N: usize> Robot<N> {
         let driven = drive(&p.body, &p.limits, p.period, self.last, passed);
         probe.mark(Stage::Drive);
 
-        let left = ports.drive.set_speed(Side::Left, driven.wheels.left);
-        let right = ports.drive.set_speed(Side::Right, driven.wheels.right);
-
         self.last = driven.twist;
         let tick = self.tick;
         self.tick = self.tick.wrapping_add(1);
@@ -229,7 +254,7 @@ impl<const N: usize> Robot<N> {
             twist: driven.twist,
             wheels: driven.wheels,
             guarded,
-            drive_fault: left.is_err() || right.is_err(),
+            drive_fault: false,
         }
     }
 }

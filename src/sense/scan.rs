@@ -15,6 +15,7 @@ use heapless::Vec;
 /// An echo that is `age` old is drawn nearer by `speed · age`, the worst that the robot's own motion can have done.
 /// Neighbouring echoes closer than `ring.gap` belong together; a silent or invalid sensor in between separates. In a
 /// closed ring the last sensor's neighbour is the first. Sensors past [`MAX_BEAMS`] are not looked at.
+#[inline(never)]
 pub fn sense_ranges<const N: usize>(
     ring: &RingGeometry<N>,
     readings: &[RangeReading],
@@ -45,8 +46,9 @@ pub fn sense_ranges<const N: usize>(
             sensed.valid = sensed.valid.saturating_add(1);
         }
         let Range::Echo(distance) = range else {
-            if let Some(run) = open.take() {
+            if let Some(run) = &open {
                 finds.close(run, &mut first, sensed);
+                open = None;
             }
             continue;
         };
@@ -75,7 +77,10 @@ pub fn sense_ranges<const N: usize>(
                 run.spread = run.spread.max(spread);
             }
             _ => {
-                let run = Run {
+                if let Some(run) = &open {
+                    finds.close(run, &mut first, sensed);
+                }
+                open = Some(Run {
                     start: index,
                     count: 1,
                     at_begin,
@@ -84,30 +89,24 @@ pub fn sense_ranges<const N: usize>(
                     direction,
                     nearest: from_centre,
                     spread,
-                };
-                if let Some(finished) = open.replace(run) {
-                    finds.close(finished, &mut first, sensed);
-                }
+                });
             }
         }
     }
-    match (open, first) {
+    match (&mut open, &first) {
         // The last run goes on in the first: one obstacle.
         (Some(last), Some(first)) if near(last.last, first.first) => {
             turn_round(&mut sensed.echoes, last.start);
             turn_round(&mut sensed.spreads, last.start);
-            let whole = Run {
-                start: 0,
-                count: last.count.saturating_add(first.count),
-                last: first.last,
-                nearest: last.nearest.min(first.nearest),
-                spread: last.spread.max(first.spread),
-                ..last
-            };
-            finds.insert(whole, sensed);
+            last.start = 0;
+            last.count = last.count.saturating_add(first.count);
+            last.last = first.last;
+            last.nearest = last.nearest.min(first.nearest);
+            last.spread = last.spread.max(first.spread);
+            finds.insert(last, sensed);
         }
-        (last, first) => {
-            for run in [last, first].into_iter().flatten() {
+        _ => {
+            for run in [&open, &first].into_iter().flatten() {
                 finds.insert(run, sensed);
             }
         }
@@ -152,16 +151,16 @@ struct Finds<'a, const N: usize> {
 
 impl<const N: usize> Finds<'_, N> {
     /// A run ends. The one from a closed ring's first sensor waits for the last.
-    fn close(&mut self, run: Run, first: &mut Option<Run>, sensed: &mut Sensed) {
+    fn close(&mut self, run: &Run, first: &mut Option<Run>, sensed: &mut Sensed) {
         if run.at_begin && self.ring.closed {
-            *first = Some(run);
+            *first = Some(*run);
         } else {
             self.insert(run, sensed);
         }
     }
 
     /// Puts the run's circle in its place; when the list is full, the farthest goes.
-    fn insert(&mut self, run: Run, sensed: &mut Sensed) {
+    fn insert(&mut self, run: &Run, sensed: &mut Sensed) {
         let (obstacles, nearest) = (&mut sensed.obstacles, &mut self.nearest);
         if obstacles.is_full() {
             if nearest.last().is_some_and(|last| *last <= run.nearest) {
@@ -170,7 +169,7 @@ impl<const N: usize> Finds<'_, N> {
             obstacles.pop();
             nearest.pop();
         }
-        let obstacle = circle_of(self.ring, &mut self.space, &run, &sensed.echoes);
+        let obstacle = circle_of(self.ring, &mut self.space, run, &sensed.echoes);
         // There is room now. What lies farther moves up.
         let _ = (obstacles.push(obstacle), nearest.push(run.nearest));
         let mut at = nearest.len().saturating_sub(1);

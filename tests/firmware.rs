@@ -1,0 +1,396 @@
+//! What every board does around the pilot: a machine on modelled motors, its button and lamp, the crash word, the pipe.
+
+use fuzzypilot::firmware::crash;
+use fuzzypilot::firmware::kit;
+use fuzzypilot::firmware::panel::{Button, Lamp};
+use fuzzypilot::firmware::pipe::Pipe;
+use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, STEP_US};
+use fuzzypilot::link::message::{Cause, Why};
+use fuzzypilot::link::settings;
+use fuzzypilot::pilot::State;
+use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
+use fuzzypilot::ports::quadrature::{QuadratureCounter, QuadratureEncoders};
+use fuzzypilot::ports::ring::Sample;
+use fuzzypilot::ports::wheel_loop::WheelLoop;
+use fuzzypilot::ports::{Fault, NoPin, Range};
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// A wheel with its motor and encoder: effort, speed, travel; mounted so that forward is `forward`.
+#[derive(Clone, Debug)]
+struct Wheel {
+    state: Rc<Cell<(f64, f64, f64)>>,
+    forward: f64,
+    blocked: Rc<Cell<bool>>,
+}
+
+impl Wheel {
+    fn new(forward: f64) -> Self {
+        Self {
+            state: Rc::default(),
+            forward,
+            blocked: Rc::default(),
+        }
+    }
+
+    fn effort(&self) -> f64 {
+        self.state.get().0
+    }
+
+    fn travel(&self) -> f64 {
+        self.forward * self.state.get().2
+    }
+
+    fn roll(&self, dt: f64) {
+        let (effort, speed, travel) = self.state.get();
+        let goal = effort.signum() * (effort.abs() - 0.08).max(0.0);
+        let speed = match self.blocked.get() {
+            true => 0.0,
+            false => speed + (goal - speed) * (dt / 0.06),
+        };
+        self.state.set((effort, speed, travel + speed * dt));
+    }
+}
+
+impl Motor for Wheel {
+    type Error = core::convert::Infallible;
+    fn drive(&mut self, effort: Effort) -> Result<(), Self::Error> {
+        let (_, speed, travel) = self.state.get();
+        self.state
+            .set((f64::from(effort.bits()) / 32_767.0, speed, travel));
+        Ok(())
+    }
+    fn brake(&mut self) -> Result<(), Self::Error> {
+        self.drive(Effort::ZERO)
+    }
+    fn coast(&mut self) -> Result<(), Self::Error> {
+        self.drive(Effort::ZERO)
+    }
+}
+
+impl QuadratureCounter for Wheel {
+    type Raw = u16;
+    fn raw(&mut self) -> Result<u16, Fault> {
+        Ok((self.state.get().2 / 0.000_141_81).floor() as i64 as u16)
+    }
+}
+
+type Model = Machine<'static, Wheel, Wheel, NoPin, QuadratureEncoders<Wheel, Wheel>>;
+
+/// The board that the machine sees.
+#[derive(Default)]
+struct Bench {
+    panel: Panel,
+    now: u32,
+    due: bool,
+    samples: Vec<Sample>,
+    controls: u32,
+    refused: Vec<Why>,
+    states: Vec<State>,
+}
+
+impl Board for Bench {
+    fn now_us(&mut self) -> u32 {
+        self.now
+    }
+    fn due(&mut self) -> bool {
+        std::mem::take(&mut self.due)
+    }
+    fn panel(&mut self) -> Panel {
+        self.panel
+    }
+    fn sample(&mut self) -> Option<Sample> {
+        self.samples.pop()
+    }
+    fn received(&mut self) -> Option<u8> {
+        None
+    }
+    fn send(&mut self, _: &[u8]) {}
+    fn stack(&mut self) -> u32 {
+        0
+    }
+    fn lamp(&mut self, _: bool) {}
+    fn feed(&mut self) {
+        self.controls += 1;
+    }
+    fn log(&mut self, event: Event) {
+        match event {
+            Event::State(state) => self.states.push(state),
+            Event::Refused(why) => self.refused.push(why),
+        }
+    }
+}
+
+/// A robot on its bench.
+struct Robot {
+    machine: Model,
+    wheels: [Wheel; 2],
+    board: Bench,
+}
+
+impl Robot {
+    fn new(reset: Cause) -> Self {
+        Self::with(BoardPilot::new(kit::params(), kit::HOME), reset)
+    }
+
+    fn with(pilot: BoardPilot, reset: Cause) -> Self {
+        let pilot = Box::leak(Box::new(pilot));
+        kit::lay_path(pilot);
+        let [left, right] = [Wheel::new(1.0), Wheel::new(-1.0)];
+        let bridge = Bridge::new(left.clone(), right.clone());
+        let drive = WheelLoop::new(bridge, kit::wheels()).unwrap();
+        let encoders = QuadratureEncoders::new(left.clone(), right.clone())
+            .reverse(false, true)
+            .at_most(kit::COUNTS_A_STEP);
+        Self {
+            machine: Machine::new(pilot, drive, encoders, reset),
+            wheels: [left, right],
+            board: Bench {
+                now: u32::MAX - 500_000,
+                ..Bench::default()
+            },
+        }
+    }
+
+    /// So many seconds, with clear readings from every sensor every 50 ms.
+    fn run(&mut self, seconds: f64) {
+        for _ in 0..(seconds * 200.0) as u32 {
+            let board = &mut self.board;
+            board.now = board.now.wrapping_add(STEP_US);
+            if board.now % 50_000 < STEP_US {
+                board.samples.extend((0..kit::SENSORS).map(|index| Sample {
+                    index,
+                    range: Range::Clear,
+                    at_us: board.now,
+                }));
+            }
+            board.due = true;
+            self.machine.run(board);
+            for wheel in &self.wheels {
+                wheel.roll(0.005);
+            }
+        }
+    }
+
+    fn press(&mut self) {
+        self.board.panel.button = true;
+        self.run(0.1);
+        self.board.panel.button = false;
+        self.run(0.1);
+    }
+
+    fn state(&self) -> State {
+        self.machine.state()
+    }
+
+    fn efforts(&self) -> [f64; 2] {
+        self.wheels.each_ref().map(Wheel::effort)
+    }
+}
+
+#[test]
+fn the_kit_is_sound() {
+    let params = kit::params();
+    assert_eq!(params.check(), Ok(()));
+    let headings: Vec<i32> = params
+        .ring
+        .mounts
+        .iter()
+        .map(|mount| mount.pose.heading.bits())
+        .collect();
+    assert_eq!(headings.len(), kit::SENSORS);
+    assert!(headings.is_sorted(), "counter-clockwise: {headings:?}");
+    let mut places: Vec<usize> = kit::ECHOES.into_iter().chain(kit::LASERS).collect();
+    places.sort_unstable();
+    assert_eq!(places, (0..kit::SENSORS).collect::<Vec<_>>());
+}
+
+#[test]
+fn the_button_drives_a_metre_and_it_stands_again() {
+    let mut robot = Robot::new(Cause::Boot);
+    robot.run(1.0);
+    assert_eq!(robot.efforts(), [0.0; 2]);
+    robot.press();
+    robot.run(2.0);
+    assert_eq!(robot.state(), State::Armed);
+    robot.run(6.0);
+    for wheel in &robot.wheels {
+        assert!((0.93..1.05).contains(&wheel.travel()), "{}", wheel.travel());
+    }
+    assert_eq!(robot.efforts(), [0.0; 2]);
+    let [boot, over] = [Cause::Boot, Cause::PathOver].map(State::Disarmed);
+    assert_eq!(robot.board.states, [boot, State::Armed, over]);
+}
+
+#[test]
+fn a_button_that_is_down_from_the_start_arms_nothing() {
+    let mut robot = Robot::new(Cause::Boot);
+    robot.board.panel.button = true;
+    robot.run(2.0);
+    robot.board.panel.button = false;
+    robot.run(1.0);
+    assert_eq!(robot.state(), State::Disarmed(Cause::Boot));
+    robot.press();
+    assert_eq!(robot.state(), State::Armed);
+}
+
+#[test]
+fn a_second_press_stops() {
+    let mut robot = Robot::new(Cause::Boot);
+    robot.run(0.5);
+    robot.press();
+    robot.run(0.5);
+    assert!(robot.efforts().iter().all(|&effort| effort != 0.0));
+    robot.press();
+    assert_eq!(robot.state(), State::Disarmed(Cause::Button));
+    assert_eq!(robot.efforts(), [0.0; 2]);
+}
+
+#[test]
+fn the_emergency_stop_stops_and_blocks() {
+    let mut robot = Robot::new(Cause::Boot);
+    robot.board.panel.emergency = true;
+    robot.run(0.5);
+    robot.press();
+    assert_eq!(robot.board.refused, [Why::Emergency]);
+    robot.board.panel.emergency = false;
+    robot.press();
+    robot.run(0.5);
+    assert!(robot.efforts().iter().all(|&effort| effort != 0.0));
+    // One step later the wheels are off, wherever the control period is.
+    robot.board.panel.emergency = true;
+    robot.run(0.005);
+    assert_eq!(robot.efforts(), [0.0; 2]);
+    assert_eq!(robot.state(), State::Disarmed(Cause::Emergency));
+    // Released, it does not go on by itself.
+    robot.board.panel.emergency = false;
+    robot.run(1.0);
+    assert_eq!(robot.efforts(), [0.0; 2]);
+    assert_eq!(robot.state(), State::Disarmed(Cause::Emergency));
+}
+
+#[test]
+fn a_stalled_wheel_stays_off_for_two_seconds() {
+    let mut robot = Robot::new(Cause::Boot);
+    robot.run(0.5);
+    robot.press();
+    robot.run(0.3);
+    robot.wheels[1].blocked.set(true);
+    robot.run(1.5);
+    assert_eq!(robot.state(), State::Disarmed(Cause::DriveFault));
+    assert_eq!(robot.efforts(), [0.0; 2]);
+    robot.press();
+    assert_eq!(robot.board.refused, [Why::DriveFault]);
+    robot.wheels[1].blocked.set(false);
+    robot.run(2.0);
+    robot.press();
+    assert_eq!(robot.state(), State::Armed);
+}
+
+#[test]
+fn control_periods_follow_the_setting() {
+    for (millis, a_second) in [(20, 50), (50, 20), (5, 200), (7, 200), (8, 100), (1000, 1)] {
+        let mut pilot = BoardPilot::new(kit::params(), kit::HOME);
+        let period = ((i64::from(millis) << 24) / 1000) as i32;
+        pilot.change_params(|params| settings::set(params, 20, period).unwrap());
+        let mut robot = Robot::with(pilot, Cause::Boot);
+        robot.run(1.0);
+        assert_eq!(robot.board.controls, a_second, "{millis} ms");
+    }
+}
+
+#[test]
+fn the_last_reset_is_told() {
+    let mut robot = Robot::new(Cause::Watchdog);
+    robot.run(0.1);
+    assert_eq!(robot.board.states, [State::Disarmed(Cause::Watchdog)]);
+}
+
+#[test]
+fn a_bouncing_button_counts_once() {
+    let mut button = Button::new();
+    let mut presses = 0;
+    let mut sample = |down, times| {
+        for _ in 0..times {
+            presses += u32::from(button.sample(down));
+        }
+    };
+    sample(false, 20);
+    for _ in 0..5 {
+        sample(true, 2);
+        sample(false, 2);
+    }
+    sample(true, 50);
+    sample(false, 3);
+    sample(true, 50);
+    sample(false, 50);
+    assert_eq!(presses, 1);
+}
+
+#[test]
+fn the_lamp_tells_the_states_apart() {
+    let round = |state, emergency| {
+        let mut lamp = Lamp::new();
+        let shines: Vec<bool> = (0..200).map(|_| lamp.step(state, emergency)).collect();
+        // The second round is the first.
+        assert!(
+            shines
+                .iter()
+                .all(|&shine| lamp.step(state, emergency) == shine)
+        );
+        let on = shines.iter().filter(|&&shine| shine).count();
+        let blinks = shines.windows(2).filter(|pair| pair[0] && !pair[1]).count();
+        (on, blinks)
+    };
+    assert_eq!(round(State::Armed, false), (200, 0));
+    assert_eq!(round(State::Disarmed(Cause::PathOver), false), (100, 1));
+    assert_eq!(round(State::Disarmed(Cause::Emergency), true), (40, 2));
+    assert_eq!(round(State::Disarmed(Cause::Watchdog), false), (100, 10));
+}
+
+#[test]
+fn a_crash_leaves_its_cause() {
+    for cause in [Cause::Panic, Cause::HardFault] {
+        assert_eq!(crash::cause(crash::word(cause)), Some(cause));
+    }
+    for noise in [0, u32::MAX, 0xCCCC_CCCC, crash::word(Cause::Boot)] {
+        assert_eq!(crash::cause(noise), None);
+    }
+}
+
+#[test]
+fn a_pipe_keeps_the_order_between_two_threads() {
+    static PIPE: Pipe<16> = Pipe::new();
+    const TIMES: u32 = 20_000;
+    let pusher = std::thread::spawn(|| {
+        for i in 0..TIMES {
+            while !PIPE.push(&i.to_le_bytes()) {
+                std::thread::yield_now();
+            }
+        }
+    });
+    for i in 0..TIMES {
+        let bytes = loop {
+            if let Some(bytes) = PIPE.pop_all() {
+                break bytes;
+            }
+            std::thread::yield_now();
+        };
+        assert_eq!(u32::from_le_bytes(bytes), i);
+    }
+    pusher.join().unwrap();
+    assert!(PIPE.is_empty());
+}
+
+#[test]
+fn a_pipe_takes_all_or_nothing() {
+    let pipe: Pipe<8> = Pipe::new();
+    for round in 0..20u8 {
+        assert!(pipe.push(&[round; 4]));
+        assert!(!pipe.push(&[0; 4]));
+        assert!(pipe.push(&[round; 3]));
+        assert!(!pipe.push(&[0]));
+        assert_eq!(pipe.pop_all(), Some([round; 7]));
+        assert_eq!(pipe.pop(), None);
+    }
+}
