@@ -33,6 +33,10 @@ pub const POINTS: usize = 64;
 /// Time between two calls of [`Machine::step`].
 pub const STEP_US: u32 = 5_000;
 
+/// A watchdog waits for a tick this many steps, 100 ms, at least. Where the control period is longer, the steps between
+/// two ticks feed it.
+const PATIENT_STEPS: u16 = 20;
+
 /// After a disarming it takes so many steps until a stall is forgiven: 2 s.
 const FORGIVE_STEPS: u16 = 400;
 
@@ -101,7 +105,8 @@ pub trait Board {
     /// Switches the lamp.
     fn lamp(&mut self, on: bool);
 
-    /// Feeds the watchdog: a control period is complete.
+    /// Feeds the watchdog, which must wait for 100 ms at least: a control period is complete, or it is a long one that
+    /// goes on.
     fn feed(&mut self);
 
     /// Logs what happened.
@@ -172,9 +177,13 @@ where
         self.forgive();
         self.turn(now_us);
         self.steps = self.steps.saturating_add(1);
-        if self.steps >= steps_of(self.pilot.robot().params().period) {
+        let period = steps_of(self.pilot.robot().params().period);
+        if self.steps >= period {
             self.steps = 0;
             self.control(now_us);
+            board.feed();
+        } else if period > PATIENT_STEPS {
+            // A tick that hangs ends the steps, too.
             board.feed();
         }
         let state = self.pilot.state();

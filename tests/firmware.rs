@@ -84,7 +84,10 @@ struct Bench {
     now: u32,
     due: bool,
     samples: Vec<Sample>,
-    controls: u32,
+    feeds: u32,
+    fed_us: Option<u32>,
+    /// Longest time without a feed.
+    hungry_us: u32,
     refused: Vec<Why>,
     states: Vec<State>,
 }
@@ -111,7 +114,10 @@ impl Board for Bench {
     }
     fn lamp(&mut self, _: bool) {}
     fn feed(&mut self) {
-        self.controls += 1;
+        self.feeds += 1;
+        let since = self.now.wrapping_sub(self.fed_us.unwrap_or(self.now));
+        self.hungry_us = self.hungry_us.max(since);
+        self.fed_us = Some(self.now);
     }
     fn log(&mut self, event: Event) {
         match event {
@@ -289,13 +295,26 @@ fn a_stalled_wheel_stays_off_for_two_seconds() {
 
 #[test]
 fn control_periods_follow_the_setting() {
-    for (millis, a_second) in [(20, 50), (50, 20), (5, 200), (7, 200), (8, 100), (1000, 1)] {
+    for (millis, a_second) in [(20, 50), (50, 20), (100, 10), (5, 200), (7, 200), (8, 100)] {
         let mut pilot = BoardPilot::new(kit::params(), kit::HOME);
         let period = ((i64::from(millis) << 24) / 1000) as i32;
         pilot.change_params(|params| settings::set(params, 20, period).unwrap());
         let mut robot = Robot::with(pilot, Cause::Boot);
         robot.run(1.0);
-        assert_eq!(robot.board.controls, a_second, "{millis} ms");
+        assert_eq!(robot.board.feeds, a_second, "{millis} ms");
+    }
+}
+
+#[test]
+fn no_period_starves_the_watchdog() {
+    for millis in [5, 20, 100, 101, 250, 1000, 2000] {
+        let mut pilot = BoardPilot::new(kit::params(), kit::HOME);
+        let period = ((i64::from(millis) << 24) / 1000) as i32;
+        pilot.change_params(|params| settings::set(params, 20, period).unwrap());
+        let mut robot = Robot::with(pilot, Cause::Boot);
+        robot.run(5.0);
+        let hungry = robot.board.hungry_us;
+        assert!((1..=100_000).contains(&hungry), "{millis} ms: {hungry} µs");
     }
 }
 
