@@ -30,7 +30,7 @@ pub const SEGMENTS: usize = 32;
 /// Points that a path has room for.
 pub const POINTS: usize = 64;
 
-/// Time between two calls of [`Machine::step`].
+/// Time between two steps of [`Machine::run`].
 pub const STEP_US: u32 = 5_000;
 
 /// A watchdog waits for a tick this many steps, 100 ms, at least. Where the control period is longer, the steps between
