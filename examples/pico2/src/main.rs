@@ -1,0 +1,105 @@
+//! The Raspberry Pi Pico 2's start of a board file: shows that the library runs on it unchanged.
+//!
+//! Wired: the machine at its fixed rate, lamp (GP25), button (GP27), emergency stop (GP26, opens), watchdog fed by
+//! complete control periods only. Not wired: motors, encoders, range sensors, link; it cannot drive. Take these from
+//! `examples/pico`.
+#![no_std]
+#![no_main]
+
+use core::convert::Infallible;
+use embedded_hal::digital::{InputPin, OutputPin};
+use fuzzypilot::firmware::{BoardPilot, Machine, Panel, STEP_US, kit};
+use fuzzypilot::link::message::Cause;
+use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
+use fuzzypilot::ports::wheel_loop::WheelLoop;
+use fuzzypilot::ports::{Fault, WheelCounts, WheelEncoders};
+use rp235x_hal as hal;
+
+#[unsafe(link_section = ".start_block")]
+#[used]
+static IMAGE: hal::block::ImageDef = hal::block::ImageDef::secure_exe();
+
+/// A motor that is not connected.
+struct NoMotor;
+
+impl Motor for NoMotor {
+    type Error = Infallible;
+
+    fn drive(&mut self, _: Effort) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn brake(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn coast(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+/// Encoders that are not connected.
+struct NoEncoders;
+
+impl WheelEncoders for NoEncoders {
+    fn counts(&mut self) -> Result<WheelCounts, Fault> {
+        Err(Fault::NeverSeen)
+    }
+}
+
+#[hal::entry]
+fn main() -> ! {
+    static mut PILOT: BoardPilot = BoardPilot::new(kit::params(), kit::HOME);
+
+    // Safety: taken once, here.
+    let mut chip = unsafe { hal::pac::Peripherals::steal() };
+    let mut watchdog = hal::Watchdog::new(chip.WATCHDOG);
+    let Ok(clocks) = hal::clocks::init_clocks_and_plls(
+        12_000_000,
+        chip.XOSC,
+        chip.CLOCKS,
+        chip.PLL_SYS,
+        chip.PLL_USB,
+        &mut chip.RESETS,
+        &mut watchdog,
+    ) else {
+        hal::reset()
+    };
+    let timer = hal::Timer::new_timer0(chip.TIMER0, &mut chip.RESETS, &clocks);
+    let sio = hal::Sio::new(chip.SIO);
+    let bank = chip.IO_BANK0;
+    let pins = hal::gpio::Pins::new(bank, chip.PADS_BANK0, sio.gpio_bank0, &mut chip.RESETS);
+    let mut lamp = pins.gpio25.into_push_pull_output();
+    let mut emergency = pins.gpio26.into_pull_up_input();
+    let mut button = pins.gpio27.into_pull_up_input();
+
+    let Ok(drive) = WheelLoop::new(Bridge::new(NoMotor, NoMotor), kit::wheels()) else {
+        hal::reset()
+    };
+    kit::lay_path(PILOT);
+    let mut machine = Machine::new(PILOT, drive, NoEncoders, Cause::Boot);
+    watchdog.start(fugit::ExtU32::millis(200));
+    let now_us = || timer.get_counter_low();
+    let mut due = now_us();
+    loop {
+        if now_us().wrapping_sub(due) < STEP_US {
+            continue;
+        }
+        due = due.wrapping_add(STEP_US);
+        let panel = Panel {
+            button: button.is_low().unwrap_or(false),
+            emergency: emergency.is_high().unwrap_or(true),
+        };
+        let step = machine.step(now_us(), panel);
+        let _ = lamp.set_state(step.lamp.into());
+        if step.control {
+            watchdog.feed();
+        }
+    }
+}
+
+/// No motor is wired that would have to be switched off first.
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    hal::reset()
+}
