@@ -26,7 +26,7 @@ use cortex_m::peripheral::{NVIC, SCB};
 use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
 use fuzzypilot::firmware::pipe::Pipe;
-use fuzzypilot::firmware::{self, BoardPilot, Panel, RANGES, STEP_US, kit};
+use fuzzypilot::firmware::{self, Board, BoardPilot, Event, Panel, RANGES, STEP_US, kit};
 use fuzzypilot::link::message::Cause;
 use fuzzypilot::params::Params;
 use fuzzypilot::ports::Fault;
@@ -64,8 +64,10 @@ type Motor = PwmPinsMotor<Channel, Pin, Pin>;
 type Machine = firmware::Machine<'static, Motor, Motor, Pin, QuadratureEncoders<Wheel, Wheel>>;
 
 /// What PendSV owns.
-struct Pilotage {
-    machine: Machine,
+type Pilotage = (Machine, Chip);
+
+/// What the machine sees of the board.
+struct Chip {
     /// Steps done.
     steps: u32,
     watchdog: WATCHDOG,
@@ -189,11 +191,11 @@ fn start(pilot: &'static mut BoardPilot, own: &'static mut Option<Pilotage>) {
     core.SYST.clear_current();
     core.SYST.enable_counter();
     chip::start_watchdog(&chip.WATCHDOG);
-    PILOTAGE.put(own.insert(Pilotage {
-        machine: Machine::new(pilot, drive, encoders, reset),
+    let board = Chip {
         steps: 0,
         watchdog: chip.WATCHDOG,
-    }));
+    };
+    PILOTAGE.put(own.insert((Machine::new(pilot, drive, encoders, reset), board)));
 }
 
 /// Lets the interrupts come.
@@ -227,8 +229,8 @@ fn PendSV() {
     if OWN.is_none() {
         *OWN = PILOTAGE.take();
     }
-    if let Some(own) = OWN {
-        own.run();
+    if let Some((machine, board)) = OWN {
+        machine.run(board);
     }
 }
 
@@ -274,43 +276,51 @@ fn UART0_IRQ() {
     uart.uartimsc().modify(|_, w| w.txim().bit(more));
 }
 
-/// Sends a frame, without waiting. Where there is no room for it, it is dropped, and the desktop asks again.
-fn send(frame: &[u8]) {
-    if TO_SEND.push(frame) {
-        NVIC::pend(Interrupt::UART0_IRQ);
-    }
-}
-
-impl Pilotage {
-    /// Steps when one is due, then takes what has come in until the next is.
-    fn run(&mut self) {
-        loop {
-            let due = STEPS.load(Ordering::Relaxed);
-            if self.steps != due {
-                self.steps = due;
-                self.step();
-            }
-            let Some(byte) = RECEIVED.pop() else {
-                break;
-            };
-            self.machine.receive(byte, chip::now_us(), &mut send);
-        }
+impl Board for Chip {
+    fn now_us(&mut self) -> u32 {
+        chip::now_us()
     }
 
-    fn step(&mut self) {
-        for place in &SAMPLES {
-            if let Some(sample) = place.take() {
-                self.machine.post(sample);
-            }
-        }
-        let panel = Panel {
+    fn due(&mut self) -> bool {
+        let steps = STEPS.load(Ordering::Relaxed);
+        core::mem::replace(&mut self.steps, steps) != steps
+    }
+
+    fn panel(&mut self) -> Panel {
+        Panel {
             button: !BUTTON.read(),
             emergency: EMERGENCY.read(),
-        };
-        let step = self.machine.step(chip::now_us(), panel);
-        LAMP.write(step.lamp);
-        if step.control {
-            chip::feed(&self.watchdog);
         }
     }
+
+    fn sample(&mut self) -> Option<Sample> {
+        SAMPLES.iter().find_map(Handover::take)
+    }
+
+    fn received(&mut self) -> Option<u8> {
+        RECEIVED.pop()
+    }
+
+    /// Where there is no room for the frame it is dropped, and the desktop asks again.
+    fn send(&mut self, frame: &[u8]) {
+        if TO_SEND.push(frame) {
+            NVIC::pend(Interrupt::UART0_IRQ);
+        }
+    }
+
+    /// Not measured here.
+    fn stack(&mut self) -> u32 {
+        0
+    }
+
+    fn lamp(&mut self, on: bool) {
+        LAMP.write(on);
+    }
+
+    fn feed(&mut self) {
+        chip::feed(&self.watchdog);
+    }
+
+    /// The link tells.
+    fn log(&mut self, _: Event) {}
 }

@@ -8,9 +8,10 @@
 
 use core::convert::Infallible;
 use embedded_hal::digital::{InputPin, OutputPin};
-use fuzzypilot::firmware::{BoardPilot, Machine, Panel, STEP_US, kit};
+use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, STEP_US, kit};
 use fuzzypilot::link::message::Cause;
 use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
+use fuzzypilot::ports::ring::Sample;
 use fuzzypilot::ports::wheel_loop::WheelLoop;
 use fuzzypilot::ports::{Fault, WheelCounts, WheelEncoders};
 use rp235x_hal as hal;
@@ -79,23 +80,82 @@ fn main() -> ! {
     kit::lay_path(PILOT);
     let mut machine = Machine::new(PILOT, drive, NoEncoders, Cause::Boot);
     watchdog.start(fugit::ExtU32::millis(200));
-    let now_us = || timer.get_counter_low();
-    let mut due = now_us();
+    let mut board = Chip {
+        now_us: || timer.get_counter_low(),
+        due: timer.get_counter_low(),
+        button: || button.is_low().unwrap_or(false),
+        emergency: || emergency.is_high().unwrap_or(true),
+        lamp: |on: bool| {
+            let _ = lamp.set_state(on.into());
+        },
+        feed: || watchdog.feed(),
+    };
     loop {
-        if now_us().wrapping_sub(due) < STEP_US {
-            continue;
+        machine.run(&mut board);
+    }
+}
+
+/// What the machine sees of the board.
+struct Chip<N, B, E, L, F> {
+    now_us: N,
+    /// When the last step was due.
+    due: u32,
+    button: B,
+    emergency: E,
+    lamp: L,
+    feed: F,
+}
+
+impl<N, B, E, L, F> Board for Chip<N, B, E, L, F>
+where
+    N: FnMut() -> u32,
+    B: FnMut() -> bool,
+    E: FnMut() -> bool,
+    L: FnMut(bool),
+    F: FnMut(),
+{
+    fn now_us(&mut self) -> u32 {
+        (self.now_us)()
+    }
+
+    fn due(&mut self) -> bool {
+        let due = (self.now_us)().wrapping_sub(self.due) >= STEP_US;
+        if due {
+            self.due = self.due.wrapping_add(STEP_US);
         }
-        due = due.wrapping_add(STEP_US);
-        let panel = Panel {
-            button: button.is_low().unwrap_or(false),
-            emergency: emergency.is_high().unwrap_or(true),
-        };
-        let step = machine.step(now_us(), panel);
-        let _ = lamp.set_state(step.lamp.into());
-        if step.control {
-            watchdog.feed();
+        due
+    }
+
+    fn panel(&mut self) -> Panel {
+        Panel {
+            button: (self.button)(),
+            emergency: (self.emergency)(),
         }
     }
+
+    fn sample(&mut self) -> Option<Sample> {
+        None
+    }
+
+    fn received(&mut self) -> Option<u8> {
+        None
+    }
+
+    fn send(&mut self, _: &[u8]) {}
+
+    fn stack(&mut self) -> u32 {
+        0
+    }
+
+    fn lamp(&mut self, on: bool) {
+        (self.lamp)(on);
+    }
+
+    fn feed(&mut self) {
+        (self.feed)();
+    }
+
+    fn log(&mut self, _: Event) {}
 }
 
 /// No motor is wired that would have to be switched off first.
