@@ -1,4 +1,5 @@
 //! Fuzzy systems from design files: what they say ([`model`]), read, checked, evaluated in `f64` and in the library's fixed
 //! point, written again. They need no robot.
 
+pub mod files;
 pub mod model;
