@@ -136,6 +136,8 @@ fn output(inputs: usize) -> impl Strategy<Value = Output> {
         Just(Defuzzifier::WeightedAverage),
         centroid.prop_map(|(points, sampling)| Defuzzifier::Centroid { points, sampling }),
     ];
+    let wide = |s: &Shape| !matches!(s, Shape::Singleton(_));
+    let set = shape().prop_filter("a set has a width", wide);
     let number_conclusion = prop_oneof![
         9 => number().prop_map(Conclusion::Constant),
         1 => (vec(number(), inputs), number()).prop_map(|(coefficients, constant)| {
@@ -149,7 +151,7 @@ fn output(inputs: usize) -> impl Strategy<Value = Output> {
         defuzzifier,
         select(vec![Merge::Sum, Merge::Max]),
         names("u", 1..=5),
-        (vec(shape(), 5), vec(number_conclusion, 5)),
+        (vec(set, 5), vec(number_conclusion, 5)),
     )
         .prop_map(
             |(range, clamp, default, defuzzifier, merge, names, (sets, numbers))| {

@@ -5,7 +5,7 @@ use super::cursor::Parameter;
 use super::error::{ReadError, Source, quoted};
 use super::limits;
 use crate::fuzzy::model::{
-    Antecedent, Conclusion, Conjunction, Defuzzifier, Output, Place, RuleBlock, System,
+    Antecedent, Conclusion, Conjunction, Defuzzifier, Output, Place, RuleBlock, Shape, System,
 };
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -159,6 +159,11 @@ fn conclusions(source: Source<'_>, output: &Output, inputs: usize) -> Result<(),
                     format!("the term {name} is a fuzzy set, but {of} takes a weighted average");
                 let allowed = "a constant or a linear term; or a centroid for the output";
                 return Err(source.error(term.place, found, allowed));
+            }
+            (Conclusion::Set(Shape::Singleton(_)), _) => {
+                let found =
+                    format!("the term {name} of {of} has no width: it has no part in a centroid");
+                return Err(source.error(term.place, found, "a set that has one"));
             }
             (Conclusion::Constant(_) | Conclusion::Linear { .. }, Defuzzifier::Centroid { .. }) => {
                 let found = format!("the term {name} is no fuzzy set, but {of} takes a centroid");
