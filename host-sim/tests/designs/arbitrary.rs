@@ -245,7 +245,7 @@ fn rule() -> impl Strategy<Value = Rule> {
 
 fn block() -> impl Strategy<Value = RuleBlock> {
     let conjunction = select(vec![Conjunction::Min, Conjunction::Product]);
-    let name = prop_oneof![Just(String::new()), name("b")];
+    let name = prop_oneof![Just(String::new()), name("block")];
     (name, conjunction.clone(), conjunction, vec(rule(), 1..8)).prop_map(
         |(name, and, implication, rules)| RuleBlock {
             name,
@@ -265,7 +265,7 @@ pub fn system() -> impl Strategy<Value = System> {
             names("o", 3..=3),
         )
     });
-    let name = prop_oneof![Just(String::new()), name("s")];
+    let name = prop_oneof![Just(String::new()), name("system")];
     (name, variables, vec(block(), 1..4)).prop_map(
         |(name, (mut inputs, input_names, mut outputs, output_names), mut blocks)| {
             for (input, name) in inputs.iter_mut().zip(input_names) {
