@@ -48,7 +48,10 @@ impl<'s, 't> Cursor<'s, 't> {
             Kind::Open => {
                 let (opening, closing) = closing(token.text);
                 let found = format!("`{opening}` opens what is never closed");
-                let allowed = format!("`{closing}` somewhere behind it");
+                let allowed = match closing {
+                    "'" => "`'` at its end, on the same line".to_owned(),
+                    _ => format!("`{closing}` somewhere behind it"),
+                };
                 return self.source.error(token.place, found, allowed);
             }
             Kind::Text => format!("found the text {}", quoted(token.text)),

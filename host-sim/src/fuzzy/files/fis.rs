@@ -819,11 +819,7 @@ fn index(
     match size >= 0.0 && size <= terms as f64 {
         false => {
             let found = format!("{} has no term {}", quoted(variable), number.value);
-            Err(source.error(
-                number.place,
-                found,
-                format!("0 to {terms}, for NOT with a minus"),
-            ))
+            Err(source.error(number.place, found, format!("0 to {terms}")))
         }
         true if size == 0.0 => Ok(None),
         true => Ok(Some((size as usize - 1, number.value < 0.0, number.place))),
