@@ -3,8 +3,8 @@
 use super::model::Shape;
 
 /// What is left of a smooth shape's tail below this counts as nothing where [`Shape::reaches`] is asked: half a step of
-/// a 15-bit degree, so that nothing of it is left in fixed point.
-pub const TAIL: f64 = 1.0 / 65_536.0;
+/// a 24-bit degree, so that nothing of it is left in fixed point.
+pub const TAIL: f64 = 1.0 / 33_554_432.0;
 
 impl Shape {
     /// The degree at `x`, 0 to 1. At a step of [`Shape::Points`] the later point counts, at the foot of an upright flank
