@@ -430,7 +430,7 @@ const fn sets(
         while s < set.len() && set[s].bits() == 0 {
             s += 1;
         }
-        if s == set.len() {
+        if output.complete && s == set.len() {
             return Err(Flaw::EmptySet { output: o, term: t });
         }
         sum = sum.saturating_add(weight(blocks, o, t, merge));

@@ -135,7 +135,7 @@ pub enum Flaw {
         /// Its term.
         term: usize,
     },
-    /// A set that is zero at every sample: a rule that concludes it would say nothing.
+    /// A set that is zero at every sample, in an output that claims to be complete: rules that conclude it say nothing.
     EmptySet {
         /// The output.
         output: usize,

@@ -1,7 +1,7 @@
 //! Membership functions by name. All numbers are in the variable's own steps, at most [`LIMIT`] in magnitude.
 //!
 //! Exact, to half a step of [`Degree`] at every input: [`triangle`], [`trapezoid`], [`ramp`], [`singleton`] and [`points`].
-//! A vertical edge belongs to its upper end, and takes one step of the variable.
+//! A vertical edge takes one step of the variable, just outside of where the term holds.
 //!
 //! Curved ones are made of `N` straight pieces that meet the curve at their ends, more of them where it bends more. Their
 //! worst errors, of 1:
@@ -19,8 +19,11 @@ use fixed::types::I16F16;
 
 /// Zero up to `left`, one at `peak`, zero from `right`; ascending, two of them may be equal.
 pub const fn triangle(left: i32, peak: i32, right: i32) -> [Piece; 3] {
-    assert!(left < right, "a triangle has a width");
-    points([(left, Degree::ZERO), (peak, Degree::ONE), (right, Degree::ZERO)])
+    points([
+        (left, Degree::ZERO),
+        (peak, Degree::ONE),
+        (edge(peak, right), Degree::ZERO),
+    ])
 }
 
 /// Zero up to `left`, one from `rise` to `fall`, zero from `right`; ascending, any of them may be equal.
@@ -29,7 +32,7 @@ pub const fn trapezoid(left: i32, rise: i32, fall: i32, right: i32) -> [Piece; 4
         (left, Degree::ZERO),
         (rise, Degree::ONE),
         (fall, Degree::ONE),
-        (right, Degree::ZERO),
+        (edge(fall, right), Degree::ZERO),
     ])
 }
 
@@ -44,10 +47,15 @@ pub const fn ramp(from: i32, to: i32) -> [Piece; 2] {
 
 /// One at this step, zero elsewhere.
 pub const fn singleton(at: i32) -> [Piece; 3] {
-    points([(at, Degree::ZERO), (at, Degree::ONE), (at, Degree::ZERO)])
+    triangle(at, at, at)
 }
 
-/// Straight between points, flat before the first and behind the last.
+/// Where a term ends that holds fully at `fall`: an upright flank is a step away.
+const fn edge(fall: i32, right: i32) -> i32 {
+    if right == fall { right + 1 } else { right }
+}
+
+/// Straight between points, flat before the first and behind the last. Of two at one place the later counts there.
 ///
 /// Points that descend or lie beyond [`LIMIT`] do not compile in a `const` (at run time they panic, so keep them in one,
 /// or in order).
@@ -60,40 +68,31 @@ pub const fn points<const N: usize>(points: [(i32, Degree); N]) -> [Piece; N] {
 
 /// Like [`points`] for as many as there are: the pieces that fit.
 pub const fn fill(points: &[(i32, Degree)], pieces: &mut [Piece]) {
+    let mut from = (i32::MIN, Degree::ZERO);
     let mut i = 0;
-    let mut from = (0, Degree::ZERO);
     while i < points.len() && i < pieces.len() {
-        let to = moved(points, i, from.0);
-        if i > 0 {
-            pieces[i - 1] = Piece::between(from, to);
+        let (mut x, degree) = points[i];
+        assert!(
+            x >= -LIMIT && x <= LIMIT + 1,
+            "a number of a term is beyond ±(2^30 - 2)"
+        );
+        if i + 1 < points.len() {
+            assert!(
+                points[i + 1].0 >= x,
+                "the points of a term must ascend: one lies left of the one before it"
+            );
+            // It makes room for the later one.
+            if points[i + 1].0 == x && from.0 < x {
+                x -= 1;
+            }
         }
-        pieces[i] = Piece::flat(to);
-        from = to;
+        if i > 0 {
+            pieces[i - 1] = Piece::between(from, (x, degree));
+        }
+        pieces[i] = Piece::flat((x, degree));
+        from = (x, degree);
         i += 1;
     }
-}
-
-/// Point `i`, the lower end of a vertical edge moved away by a step; never left of `last` where there is one.
-const fn moved(points: &[(i32, Degree)], i: usize, last: i32) -> (i32, Degree) {
-    let (mut x, degree) = points[i];
-    assert!(x >= -LIMIT && x <= LIMIT, "a term's number is too large");
-    if i + 1 < points.len() {
-        let next = points[i + 1];
-        assert!(next.0 >= x, "the points of a term must ascend: one lies left of the one before it");
-        if next.0 == x && next.1.bits() > degree.bits() {
-            x -= 1;
-        }
-    }
-    if i > 0 {
-        let before = points[i - 1];
-        if before.0 == x && before.1.bits() > degree.bits() {
-            x += 1;
-        }
-        if x < last {
-            x = last;
-        }
-    }
-    (x, degree)
 }
 
 /// exp(−(x − mean)² / 2·deviation²) in `N` points: (N + 1) / 2 a flank, the peak shared.
