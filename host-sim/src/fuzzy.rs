@@ -1,4 +1,11 @@
 //! Fuzzy systems from design files: what they say ([`model`]), read, checked, evaluated in `f64` and in the library's fixed
 //! point, written again. They need no robot.
 
+pub mod check;
+pub mod evaluate;
+pub mod membership;
 pub mod model;
+pub mod random;
+
+#[cfg(test)]
+mod sample;
