@@ -1,7 +1,7 @@
 //! Membership functions by name. All numbers are in the variable's own steps, at most [`LIMIT`] in magnitude.
 //!
 //! Exact, to half a step of [`Degree`] at every input: [`triangle`], [`trapezoid`], [`ramp`], [`singleton`] and [`points`].
-//! A vertical edge takes one step of the variable, just outside of where the term holds.
+//! A vertical edge that falls takes one step of the variable, just outside of where the term holds.
 //!
 //! Curved ones are made of `N` straight pieces that meet the curve at their ends, more of them where it bends more. Their
 //! worst errors, of 1:
@@ -68,29 +68,21 @@ pub const fn points<const N: usize>(points: [(i32, Degree); N]) -> [Piece; N] {
 
 /// Like [`points`] for as many as there are: the pieces that fit.
 pub const fn fill(points: &[(i32, Degree)], pieces: &mut [Piece]) {
-    let mut from = (i32::MIN, Degree::ZERO);
     let mut i = 0;
     while i < points.len() && i < pieces.len() {
-        let (mut x, degree) = points[i];
+        let (x, _) = points[i];
         assert!(
             x >= -LIMIT && x <= LIMIT + 1,
             "a number of a term is beyond ±(2^30 - 2)"
         );
-        if i + 1 < points.len() {
+        if i > 0 {
             assert!(
-                points[i + 1].0 >= x,
+                x >= points[i - 1].0,
                 "the points of a term must ascend: one lies left of the one before it"
             );
-            // It makes room for the later one.
-            if points[i + 1].0 == x && from.0 < x {
-                x -= 1;
-            }
+            pieces[i - 1] = Piece::between(points[i - 1], points[i]);
         }
-        if i > 0 {
-            pieces[i - 1] = Piece::between(from, (x, degree));
-        }
-        pieces[i] = Piece::flat((x, degree));
-        from = (x, degree);
+        pieces[i] = Piece::flat(points[i]);
         i += 1;
     }
 }
