@@ -14,7 +14,7 @@
 //! use fixed::types::I16F16;
 //! use fuzzypilot::fuzzy::system::shape::{ramp, triangle};
 //! use fuzzypilot::fuzzy::system::{
-//!     Block, Controller, Defuzzifier, Input, Literal::{Is, IsNot}, Merge, Number::Constant, Output, Rule, System,
+//!     Block, Controller, Defuzzifier, Input, Literal::Is, Merge, Number::Constant, Output, Rule, System,
 //! };
 //!
 //! /// A number in steps of 2^-16.
@@ -51,7 +51,7 @@
 //!     &[Block::min(&[
 //!         Rule::new(&[&[Is(TEMPERATURE, COLD)]], &[(FAN, OFF)]),
 //!         Rule::new(&[&[Is(TEMPERATURE, MILD), Is(HUMIDITY, DRY)]], &[(FAN, OFF)]),
-//!         Rule::new(&[&[Is(TEMPERATURE, MILD), IsNot(HUMIDITY, DRY)]], &[(FAN, SLOW)]),
+//!         Rule::new(&[&[Is(TEMPERATURE, MILD), Is(HUMIDITY, DAMP)]], &[(FAN, SLOW)]),
 //!         Rule::new(&[&[Is(TEMPERATURE, HOT)]], &[(FAN, FAST)]),
 //!     ])],
 //!     &[Output {
