@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod evaluate;
+pub mod lower;
 pub mod membership;
 pub mod model;
 pub mod random;
