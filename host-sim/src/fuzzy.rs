@@ -2,10 +2,12 @@
 //! point, written again. They need no robot.
 
 pub mod check;
+pub mod describe;
 pub mod evaluate;
 pub mod lower;
 pub mod membership;
 pub mod model;
+pub mod picture;
 pub mod random;
 
 #[cfg(test)]

@@ -72,6 +72,24 @@ impl Shape {
         }
     }
 
+    /// Where the degree jumps, or is one at a single value.
+    pub fn jumps(&self) -> Vec<f64> {
+        let ends = match *self {
+            Self::Triangle { left, peak, right } => vec![(left, peak), (peak, right)],
+            Self::Trapezoid {
+                left,
+                rise,
+                fall,
+                right,
+            } => vec![(left, rise), (fall, right)],
+            Self::Singleton(at) => vec![(at, at)],
+            Self::Points(ref points) => points.windows(2).map(|two| (two[0].0, two[1].0)).collect(),
+            _ => Vec::new(),
+        };
+        let upright = ends.into_iter().filter(|(a, b)| a == b && a.is_finite());
+        upright.map(|(at, _)| at).collect()
+    }
+
     /// Finite values, ascending, between which the degree only rises or only falls, and [`Shape::reaches`] and
     /// [`Shape::fills`] do not change.
     pub fn knots(&self) -> Vec<f64> {
