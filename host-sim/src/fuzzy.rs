@@ -4,6 +4,7 @@
 pub mod check;
 pub mod describe;
 pub mod evaluate;
+pub mod files;
 pub mod lower;
 pub mod membership;
 pub mod model;
