@@ -1,9 +1,9 @@
 //! How far fixed point can be from `f64` anywhere, not only where it was measured.
 //!
-//! 1. Each input's terms are compared along their own axis, thousands of values each: the greatest difference, a tenth
+//! 1. Each input's terms are compared along their own axis, at thousands of values: the greatest difference nearby, a tenth
 //!    more and a step of a degree, is what a term may be off. It holds all of rounding the input, straight pieces for curves,
 //!    rounding the degree.
-//! 2. The ranges are cut into boxes. In each, every term's least and greatest degree are known, so those of every rule are, and how
+//! 2. The ranges are cut into boxes, finer where the bound is greatest. In each, every term's least and greatest degree are known, so those of every rule are, and how
 //!    far a rule may be off: the minimum and the maximum are off by no more than the worst of their operands, products by the
 //!    sum of what their factors are off.
 //! 3. An output Σ w·z / Σ w whose weights are off by E in all is off by E · (greatest z − least z) / (Σ w − E), where only
@@ -20,20 +20,26 @@ use super::jumps::Jumps;
 use crate::fuzzy::evaluate::{conjoined, merged, rules, samples};
 use crate::fuzzy::lower::{Fixed, Lowered};
 use crate::fuzzy::model::{
-    Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Output, Rule, RuleBlock, System, Term,
+    Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Output, Rule, RuleBlock, System,
 };
 use fuzzypilot::fuzzy::Grade;
-use fuzzypilot::fuzzy::system::Degree;
+use fuzzypilot::fuzzy::system::{self as fixed, Degree};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
 
 /// The greatest error of each output, in its own unit, for each of [`STRENGTHS`].
 pub type Bounds = Vec<[f64; STRENGTHS.len()]>;
 
-/// About how many boxes.
-const BOXES: usize = 20_000;
-/// Values along an axis at which a term is compared.
+/// About how many boxes it begins with; those with bounds near the greatest are halved, again and again.
+const FIRST_BOXES: usize = 2_000;
+/// How near, as a share of the greatest.
+const NEAR: f64 = 0.7;
+/// Boxes that are looked at more, fewer of a costly system.
+const MOST_BOXES: usize = 60_000;
+const MOST_WORK: usize = 400_000_000;
+/// Values along an input at which its terms are compared, and parts in which the greatest difference is kept.
 const VALUES: usize = 16_384;
+const PARTS: usize = 1024;
 /// A step of a degree.
 const DEGREE: f64 = 1.0 / Degree::ONE.bits() as f64;
 /// Half a step of a set's degree.
@@ -41,31 +47,126 @@ const SET: f64 = 0.5 / Grade::ONE.bits() as f64;
 
 /// Finds the bounds of a system's fixed point.
 pub fn bounds(system: &System, lowered: &Lowered) -> Bounds {
-    let axes = axes(system, lowered);
+    let along = Along::all(system, lowered);
     let outputs: Vec<Target> = (0..system.outputs.len())
         .map(|index| Target::new(system, lowered, index))
         .collect();
-    let boxes: usize = axes.iter().map(|axis| axis.cells.len()).product();
-    let none = || vec![[0.0; STRENGTHS.len()]; outputs.len()];
-    let greatest = |mut a: Bounds, b: Bounds| {
-        for (a, b) in a.iter_mut().flatten().zip(b.iter().flatten()) {
-            *a = a.max(*b);
+    let looked_at = |region: Region| {
+        let place: Vec<Cell> = along
+            .iter()
+            .zip(&region)
+            .map(|(a, &(from, to))| a.cell(from, to))
+            .collect();
+        let degrees: Vec<Spread> = rules(system)
+            .map(|(block, rule)| of_rule(rule, block, &place))
+            .collect();
+        let bounds = outputs
+            .iter()
+            .map(|output| output.bounds(system, &degrees, &place))
+            .collect();
+        Looked {
+            halves: halves(&region, &along, &place),
+            bounds,
         }
-        a
     };
-    (0..boxes)
-        .into_par_iter()
-        .map(|index| {
-            let place = place(&axes, index);
-            let degrees: Vec<Spread> = rules(system)
-                .map(|(block, rule)| of_rule(rule, block, &place))
-                .collect();
-            outputs
-                .iter()
-                .map(|output| output.bounds(system, &degrees, &place))
-                .collect()
-        })
-        .reduce(none, greatest)
+    let grid = Grid::new(system, FIRST_BOXES);
+    let mut boxes: Vec<Looked> = regions(&grid).into_par_iter().map(looked_at).collect();
+    let mut left = (MOST_WORK / cost(system)).min(MOST_BOXES);
+    loop {
+        let worst = greatest(&boxes, outputs.len());
+        let (near, mut rest): (Vec<Looked>, Vec<Looked>) = boxes
+            .into_iter()
+            .partition(|b| b.halves.is_some() && b.is_near(&worst));
+        if near.is_empty() || left < 2 * near.len() {
+            return worst;
+        }
+        left -= 2 * near.len();
+        let halves: Vec<Region> = near
+            .into_iter()
+            .filter_map(|b| b.halves)
+            .flatten()
+            .collect();
+        rest.par_extend(halves.into_par_iter().map(looked_at));
+        boxes = rest;
+    }
+}
+
+/// A box: from where to where along each input.
+type Region = Vec<(f64, f64)>;
+
+/// A box that was looked at.
+struct Looked {
+    bounds: Bounds,
+    /// Its halves, if halving it may make the bounds less.
+    halves: Option<[Region; 2]>,
+}
+
+impl Looked {
+    /// Whether one of its bounds is among the greatest.
+    fn is_near(&self, worst: &Bounds) -> bool {
+        let mut pairs = self.bounds.iter().flatten().zip(worst.iter().flatten());
+        pairs.any(|(own, worst)| *own > 0.0 && *own >= NEAR * worst)
+    }
+}
+
+fn greatest(boxes: &[Looked], outputs: usize) -> Bounds {
+    let mut worst = vec![[0.0_f64; STRENGTHS.len()]; outputs];
+    for looked in boxes {
+        for (worst, own) in worst
+            .iter_mut()
+            .flatten()
+            .zip(looked.bounds.iter().flatten())
+        {
+            *worst = worst.max(*own);
+        }
+    }
+    worst
+}
+
+/// The boxes between a grid's points.
+fn regions(grid: &Grid) -> Vec<Region> {
+    let mut regions: Vec<Region> = vec![Vec::new()];
+    for axis in &grid.axes {
+        regions = regions
+            .into_iter()
+            .flat_map(|region| {
+                let longer = |two: &[f64]| [&region[..], &[(two[0], two[1])]].concat();
+                axis.windows(2).map(longer).collect::<Vec<_>>()
+            })
+            .collect();
+    }
+    regions
+}
+
+/// Across the input whose terms' degrees differ most in it.
+fn halves(region: &Region, along: &[Along], place: &[Cell]) -> Option<[Region; 2]> {
+    let differ = |cell: &Cell| {
+        let apart = cell.terms.iter().map(|spread| spread.high - spread.low);
+        apart.fold(0.0, f64::max)
+    };
+    let wide = |input: usize| region[input].1 - region[input].0 > 8.0 * along[input].step;
+    let across = (0..region.len())
+        .filter(|&input| wide(input) && differ(&place[input]) > 0.0)
+        .max_by(|&a, &b| differ(&place[a]).total_cmp(&differ(&place[b])))?;
+    let (from, to) = region[across];
+    let middle = from + (to - from) / 2.0;
+    let half = |ends: (f64, f64)| {
+        let mut half = region.clone();
+        half[across] = ends;
+        half
+    };
+    Some([half((from, middle)), half((middle, to))])
+}
+
+/// What looking at a box costs, about.
+fn cost(system: &System) -> usize {
+    let rules = rules(system).count();
+    let samples: usize = system
+        .outputs
+        .iter()
+        .map(|output| samples(output).len())
+        .sum();
+    8 * rules + samples * rules.min(16) + 100
 }
 
 /// A degree's least and greatest value in a box, and how far fixed point may be from it.
@@ -89,144 +190,165 @@ impl Spread {
     }
 }
 
-/// An input's cells: from where to where, and every term's spread.
-struct Axis {
-    cells: Vec<Cell>,
-}
-
+/// Along one input of a box: from where to where, two steps wider on both sides as a rounded input may be, and every term's
+/// spread.
 struct Cell {
     range: RangeInclusive<f64>,
     terms: Vec<Spread>,
 }
 
-fn place(axes: &[Axis], mut index: usize) -> Vec<&Cell> {
-    let cell = |axis: &'_ Axis| {
-        let cell = index % axis.cells.len();
-        index /= axis.cells.len();
-        cell
-    };
-    let cells: Vec<usize> = axes.iter().map(cell).collect();
-    axes.iter()
-        .zip(cells)
-        .map(|(axis, cell)| &axis.cells[cell])
-        .collect()
+/// An input, and how far its terms may be off along it.
+struct Along<'a> {
+    input: &'a Input,
+    step: f64,
+    /// Each term's knots.
+    knots: Vec<Vec<f64>>,
+    /// Each term's greatest difference in each of [`PARTS`], then in pairs of them, fours, and so on from each.
+    errors: Vec<Vec<Vec<f64>>>,
 }
 
-fn axes(system: &System, lowered: &Lowered) -> Vec<Axis> {
-    let errors = term_errors(system, lowered);
-    let grid = Grid::new(system, BOXES);
-    let steps = lowered
-        .tables()
-        .inputs
-        .iter()
-        .map(|input| input.format.value(1));
-    let inputs = system.inputs.iter().zip(grid.axes).zip(steps).zip(&errors);
-    inputs
-        .map(|(((input, values), step), errors)| Axis {
-            cells: values
-                .windows(2)
-                .map(|ends| cell(input, ends[0], ends[1], step, errors))
-                .collect(),
-        })
-        .collect()
-}
-
-/// A cell, two steps wider on both sides: what a rounded input may reach.
-fn cell(input: &Input, from: f64, to: f64, step: f64, errors: &[f64]) -> Cell {
-    let wide = (from - 2.0 * step)..=(to + 2.0 * step);
-    let inside = (to - from) * 1e-6;
-    let spread = |(term, error): (&Term, &f64)| {
-        let mut at = vec![
-            *wide.start(),
-            from,
-            from + inside,
-            to - inside,
-            to,
-            *wide.end(),
-        ];
-        at.extend(term.shape.knots().into_iter().filter(|x| wide.contains(x)));
-        let degrees: Vec<f64> = at.into_iter().map(|x| term.shape.degree(x)).collect();
-        let low = degrees.iter().copied().fold(1.0, f64::min);
-        let high = degrees.iter().copied().fold(0.0, f64::max);
-        Spread {
-            low,
-            high,
-            error: *error,
-        }
-    };
-    Cell {
-        terms: input.terms.iter().zip(errors).map(spread).collect(),
-        range: wide.clone(),
+impl<'a> Along<'a> {
+    fn all(system: &'a System, lowered: &Lowered) -> Vec<Self> {
+        let jumps = Jumps::of(system, lowered);
+        let along = |index: usize| Self::new(system, lowered, index, &jumps);
+        (0..system.inputs.len())
+            .into_par_iter()
+            .map(along)
+            .collect()
     }
-}
 
-/// How far each input's terms may be off.
-fn term_errors(system: &System, lowered: &Lowered) -> Vec<Vec<f64>> {
-    let mut errors: Vec<Vec<f64>> = (system.inputs.iter())
-        .map(|input| vec![0.0_f64; input.terms.len()])
-        .collect();
-    // All inputs at once: each term depends on its own alone.
-    let grids: Vec<Vec<f64>> = (0..system.inputs.len())
-        .map(|index| values(system, lowered, index))
-        .collect();
-    lowered.open(|fixed| {
-        for index in 0..grids.iter().map(Vec::len).max().unwrap_or(0) {
-            let at = |grid: &Vec<f64>| grid.get(index).or(grid.last()).copied().unwrap_or(0.0);
-            let point: Vec<f64> = grids.iter().map(at).collect();
-            let found = memberships(&fixed, lowered, &point);
-            for (((input, &x), errors), found) in
-                system.inputs.iter().zip(&point).zip(&mut errors).zip(found)
-            {
-                for ((term, error), found) in input.terms.iter().zip(errors).zip(found) {
-                    *error = error.max((term.shape.degree(x) - found).abs());
-                }
+    fn new(system: &'a System, lowered: &Lowered, index: usize, jumps: &Jumps) -> Self {
+        let (input, format) = (&system.inputs[index], lowered.tables().inputs[index].format);
+        let mut along = Self {
+            input,
+            step: format.value(1),
+            knots: input.terms.iter().map(|term| term.shape.knots()).collect(),
+            errors: vec![vec![vec![0.0; PARTS]]; input.terms.len()],
+        };
+        let mut at = along.values();
+        at.retain(|&x| !jumps.near_in(index, x));
+        let steps: Vec<i32> = at.iter().map(|&x| format.nearest(x)).collect();
+        let found = lowered.open(|fixed| degrees(&fixed, index, &steps));
+        for (&x, found) in at.iter().zip(found) {
+            let part = along.part(x);
+            for ((term, errors), found) in input.terms.iter().zip(&mut along.errors).zip(found) {
+                let error = &mut errors[0][part];
+                *error = error.max((term.shape.degree(x) - found).abs());
             }
         }
-    });
-    for error in errors.iter_mut().flatten() {
-        *error = 1.1 * *error + DEGREE;
+        for levels in &mut along.errors {
+            let mut width = 1;
+            while 2 * width <= PARTS {
+                let last = &levels[levels.len() - 1];
+                let next = (0..=PARTS - 2 * width)
+                    .map(|i| last[i].max(last[i + width]))
+                    .collect();
+                levels.push(next);
+                width *= 2;
+            }
+        }
+        along
     }
-    errors
+
+    fn part(&self, x: f64) -> usize {
+        let share =
+            (x - self.input.range.start()) / (self.input.range.end() - self.input.range.start());
+        ((share * PARTS as f64) as usize).min(PARTS - 1)
+    }
+
+    /// Where terms are compared: evenly, at knots and beside them; and as far as can be from what they are rounded to.
+    fn values(&self) -> Vec<f64> {
+        let (start, end) = (*self.input.range.start(), *self.input.range.end());
+        let mut at: Vec<f64> = (0..=VALUES)
+            .map(|i| start + (end - start) * (i as f64 / VALUES as f64))
+            .collect();
+        let beside = 3.0 * self.step;
+        at.extend(
+            self.knots
+                .iter()
+                .flatten()
+                .flat_map(|x| [x - beside, *x, x + beside]),
+        );
+        let rounded = |x: f64| {
+            [
+                x,
+                ((x / self.step).round() + 0.499) * self.step,
+                ((x / self.step).round() - 0.499) * self.step,
+            ]
+        };
+        let mut at: Vec<f64> = at.into_iter().flat_map(rounded).collect();
+        at.retain(|x| self.input.range.contains(x));
+        at
+    }
+
+    fn cell(&self, from: f64, to: f64) -> Cell {
+        let range = (from - 2.0 * self.step)..=(to + 2.0 * self.step);
+        let inside = (to - from) * 1e-6;
+        let (first, last) = (self.part(*range.start()), self.part(*range.end()));
+        let level = (last - first + 1).ilog2() as usize;
+        let spread = |term: usize| {
+            let shape = &self.input.terms[term].shape;
+            let knots = self.knots[term]
+                .iter()
+                .copied()
+                .filter(|x| range.contains(x));
+            let ends = [
+                *range.start(),
+                from,
+                from + inside,
+                to - inside,
+                to,
+                *range.end(),
+            ];
+            let (low, high) = (ends.into_iter().chain(knots).map(|x| shape.degree(x)))
+                .fold((1.0_f64, 0.0_f64), |(low, high), d| {
+                    (low.min(d), high.max(d))
+                });
+            let of = &self.errors[term][level];
+            let error = of[first].max(of[last + 1 - (1 << level)]);
+            Spread {
+                low,
+                high,
+                error: 1.1 * error + DEGREE,
+            }
+        };
+        Cell {
+            terms: (0..self.knots.len()).map(spread).collect(),
+            range: range.clone(),
+        }
+    }
 }
 
-/// Where an input's terms are compared: evenly, at knots and beside them, but not where one jumps.
-fn values(system: &System, lowered: &Lowered, index: usize) -> Vec<f64> {
-    let (input, jumps) = (&system.inputs[index], Jumps::of(system, lowered));
-    let beside = 3.0 * lowered.tables().inputs[index].format.value(1);
-    let (start, end) = (*input.range.start(), *input.range.end());
-    let mut at: Vec<f64> = (0..=VALUES)
-        .map(|i| start + (end - start) * (i as f64 / VALUES as f64))
-        .collect();
-    let knots = input.terms.iter().flat_map(|term| term.shape.knots());
-    at.extend(knots.flat_map(|x| [x - beside, x, x + beside]));
-    at.retain(|&x| input.range.contains(&x) && !jumps.near_in(index, x));
-    at
+/// The library's degrees of one input's terms at many values, by a system that has no more than one rule.
+fn degrees(fixed: &Fixed<'_>, index: usize, at: &[i32]) -> Vec<Vec<f64>> {
+    let inputs = &fixed.system().inputs()[index..=index];
+    let rules = [fixed::Rule::new(&[&[fixed::Literal::Is(0, 0)]], &[(0, 0)])];
+    let blocks = [fixed::Block::min(&rules)];
+    let outputs = [fixed::Output {
+        range: [0, 1],
+        clamp: true,
+        default: 0,
+        complete: false,
+        defuzzifier: fixed::Defuzzifier::WeightedAverage {
+            merge: fixed::Merge::Sum,
+            terms: &[fixed::Number::Constant(0)],
+        },
+    }];
+    let system = fixed::System::checked(inputs, &blocks, &outputs);
+    let system = system.expect("its input was checked before, and the rest is good");
+    let mut terms = vec![Degree::ZERO; system.term_count()];
+    let mut each = |x: &i32| {
+        let done = system.evaluate(&[*x], &mut terms, &mut [Degree::ZERO], &mut [0]);
+        done.expect("memory by the system's own sizes");
+        terms
+            .iter()
+            .map(|degree| f64::from(degree.bits()) * DEGREE)
+            .collect()
+    };
+    at.iter().map(&mut each).collect()
 }
 
-/// Every term's degree in fixed point.
-fn memberships(fixed: &Fixed<'_>, lowered: &Lowered, point: &[f64]) -> Vec<Vec<f64>> {
-    let tables = lowered.tables();
-    let steps: Vec<i32> = (tables.inputs.iter().zip(point))
-        .map(|(input, x)| input.format.nearest(*x))
-        .collect();
-    let mut terms = vec![Degree::ZERO; fixed.system().term_count()];
-    let mut rules = vec![Degree::ZERO; fixed.system().rule_count()];
-    let mut outputs = vec![0; tables.outputs.len()];
-    let sizes = fixed
-        .system()
-        .evaluate(&steps, &mut terms, &mut rules, &mut outputs);
-    sizes.expect("memory by the system's own sizes");
-    let mut rest = terms
-        .into_iter()
-        .map(|degree| f64::from(degree.bits()) * DEGREE);
-    tables
-        .inputs
-        .iter()
-        .map(|input| rest.by_ref().take(input.terms.len()).collect())
-        .collect()
-}
-
-fn of_rule(rule: &Rule, block: &RuleBlock, place: &[&Cell]) -> Spread {
+fn of_rule(rule: &Rule, block: &RuleBlock, place: &[Cell]) -> Spread {
     let antecedent = of_antecedent(&rule.antecedent, block.and, place);
     let rounding = if rule.weight < 1.0 { DEGREE } else { 0.0 };
     Spread {
@@ -237,7 +359,7 @@ fn of_rule(rule: &Rule, block: &RuleBlock, place: &[&Cell]) -> Spread {
     .settled()
 }
 
-fn of_antecedent(antecedent: &Antecedent, and: Conjunction, place: &[&Cell]) -> Spread {
+fn of_antecedent(antecedent: &Antecedent, and: Conjunction, place: &[Cell]) -> Spread {
     match antecedent {
         Antecedent::Is {
             input,
@@ -325,7 +447,7 @@ impl<'a> Target<'a> {
         &self,
         system: &System,
         degrees: &[Spread],
-        place: &[&Cell],
+        place: &[Cell],
     ) -> [f64; STRENGTHS.len()] {
         let about: Vec<(Conjunction, Spread, usize)> = rules(system)
             .zip(degrees)
@@ -372,7 +494,7 @@ impl<'a> Target<'a> {
     }
 
     /// Σ w·z / Σ w.
-    fn of_numbers(&self, about: &[(Conjunction, Spread, usize)], place: &[&Cell]) -> Weights<'_> {
+    fn of_numbers(&self, about: &[(Conjunction, Spread, usize)], place: &[Cell]) -> Weights<'_> {
         let mut groups = vec![Spread::NONE; self.output.terms.len()];
         for &(_, spread, term) in about {
             let group = &mut groups[term];
@@ -401,7 +523,7 @@ impl<'a> Target<'a> {
     }
 
     /// A conclusion's least and greatest value in a box, and how far fixed point may be from it.
-    fn number(&self, conclusion: &Conclusion, place: &[&Cell]) -> (f64, f64, f64) {
+    fn number(&self, conclusion: &Conclusion, place: &[Cell]) -> (f64, f64, f64) {
         match conclusion {
             Conclusion::Constant(value) => (*value, *value, self.step / 2.0),
             Conclusion::Linear {
@@ -531,8 +653,8 @@ mod tests {
     fn measured(system: &System, lowered: &Lowered, rng: &mut Pcg64Mcg, points: usize) -> Bounds {
         let exact = Exact::new(system);
         let mut worst = vec![[0.0_f64; STRENGTHS.len()]; system.outputs.len()];
-        let grids: Vec<Vec<f64>> = (0..system.inputs.len())
-            .map(|index| values(system, lowered, index))
+        let grids: Vec<Vec<f64>> = (Along::all(system, lowered).iter())
+            .map(Along::values)
             .collect();
         let jumps = Jumps::of(system, lowered);
         for _ in 0..points {
