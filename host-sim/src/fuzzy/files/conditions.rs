@@ -216,7 +216,9 @@ impl<'s> Reader<'s, '_, '_> {
                 let place = self.cursor.peek().place;
                 return Err(self.source.error(place, found, "`and`"));
             }
-            if !self.cursor.eat_word("and") && !(self.grammar.comma && self.cursor.eat_sign(",")) {
+            let more =
+                self.cursor.eat_word("and") || (self.grammar.comma && self.cursor.eat_sign(","));
+            if !more {
                 return Ok(all);
             }
         }

@@ -115,7 +115,7 @@ impl Source<'_> {
         const LEAD: usize = 60;
         let line = lines(self.text).nth(place.line.checked_sub(1)?)?;
         let before = place.column.saturating_sub(1);
-        let skipped = if before > LEAD { before - LEAD } else { 0 };
+        let skipped = before.saturating_sub(LEAD);
         let mut text = String::new();
         if skipped > 0 {
             text.push('…');

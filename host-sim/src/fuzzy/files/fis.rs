@@ -168,7 +168,8 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
         inputs,
         outputs,
         blocks: vec![RuleBlock {
-            name: String::new(),
+            // The format has one block and no name for it; other formats ask for one.
+            name: "rules".to_owned(),
             and: and.unwrap_or(Conjunction::Min),
             implication: implication.unwrap_or(Conjunction::Min),
             rules: all,

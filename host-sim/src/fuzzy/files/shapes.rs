@@ -287,7 +287,7 @@ fn trapezoid([left, rise, fall, right]: [f64; 4]) -> Shape {
 /// Points; those of a ramp, a triangle or a trapezoid are one.
 fn points(source: Source<'_>, name: Token<'_>, given: &[Parameter]) -> Result<Shape, ReadError> {
     let pairs = given.len() / 2;
-    if given.len() % 2 == 1 || pairs < 2 || pairs > limits::POINTS {
+    if given.len() % 2 == 1 || !(2..=limits::POINTS).contains(&pairs) {
         let found = match given.len() % 2 {
             1 => format!("{} numbers make no points", given.len()),
             _ if pairs == 1 => "there is 1 point".to_owned(),
@@ -315,20 +315,18 @@ fn points(source: Source<'_>, name: Token<'_>, given: &[Parameter]) -> Result<Sh
         last = x.value;
         all.push((x.value, degree.value));
     }
-    Ok(match all.as_slice() {
-        &[(from, 0.0), (to, 1.0)] if from < to => Shape::Ramp { from, to },
-        &[(to, 1.0), (from, 0.0)] if to < from => Shape::Ramp { from, to },
-        &[(left, 0.0), (peak, 1.0), (right, 0.0)] if left < right => {
+    Ok(match *all.as_slice() {
+        [(from, 0.0), (to, 1.0)] if from < to => Shape::Ramp { from, to },
+        [(to, 1.0), (from, 0.0)] if to < from => Shape::Ramp { from, to },
+        [(left, 0.0), (peak, 1.0), (right, 0.0)] if left < right => {
             Shape::Triangle { left, peak, right }
         }
-        &[(left, 0.0), (rise, 1.0), (fall, 1.0), (right, 0.0)] if left < right => {
-            Shape::Trapezoid {
-                left,
-                rise,
-                fall,
-                right,
-            }
-        }
+        [(left, 0.0), (rise, 1.0), (fall, 1.0), (right, 0.0)] if left < right => Shape::Trapezoid {
+            left,
+            rise,
+            fall,
+            right,
+        },
         _ => Shape::Points(all),
     })
 }

@@ -119,8 +119,13 @@ pub struct RuleStyle {
 }
 
 /// `if … then … with …`.
-pub fn rule(system: &System, rule: &Rule, style: RuleStyle) -> String {
+pub fn rule(system: &System, rule: &Rule, style: RuleStyle) -> Result<String, WriteError> {
     let writer = Rules { system, style };
+    let levels = writer.levels(&rule.antecedent, true);
+    if levels > limits::DEPTH {
+        let found = format!("the rule needs {levels} levels of parentheses");
+        return refuse(rule.place, found, format!("at most {}", limits::DEPTH));
+    }
     let conclusions: Vec<String> = rule
         .conclusions
         .iter()
@@ -141,7 +146,7 @@ pub fn rule(system: &System, rule: &Rule, style: RuleStyle) -> String {
     if rule.weight != 1.0 {
         text += &format!(" with {}", number(rule.weight));
     }
-    text
+    Ok(text)
 }
 
 struct Rules<'s> {
@@ -150,7 +155,17 @@ struct Rules<'s> {
 }
 
 impl Rules<'_> {
-    /// The model bounds the recursion, see [`limits::DEPTH`].
+    /// How deep parentheses are nested.
+    fn levels(&self, antecedent: &Antecedent, outermost: bool) -> usize {
+        let (all, marked) = match antecedent {
+            Antecedent::Is { .. } => return 0,
+            Antecedent::And(all) => (all, self.style.mark_and),
+            Antecedent::Or(all) => (all, true),
+        };
+        let inner = all.iter().map(|a| self.levels(a, false)).max();
+        inner.unwrap_or(0) + usize::from(marked && !outermost)
+    }
+
     fn condition(&self, antecedent: &Antecedent, outermost: bool) -> String {
         let (all, word, mark) = match antecedent {
             Antecedent::Is {

@@ -20,8 +20,8 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     check_names(system, "FCL", RESERVED_NAMES)?;
     word(&system.name, "function block")?;
     let mut text = Lines::default();
-    text.head(0, "FUNCTION_BLOCK", &system.name);
-    text.line(0, "VAR_INPUT");
+    text.head("FUNCTION_BLOCK", &system.name);
+    text.head("VAR_INPUT", "");
     for input in &system.inputs {
         text.line(
             1,
@@ -29,13 +29,13 @@ pub fn write(system: &System) -> Result<String, WriteError> {
         );
     }
     text.line(0, "END_VAR");
-    text.line(0, "VAR_OUTPUT");
+    text.head("VAR_OUTPUT", "");
     for output in &system.outputs {
         text.line(1, &format!("{} : REAL;", output.name));
     }
     text.line(0, "END_VAR");
     for input in &system.inputs {
-        text.head(0, "FUZZIFY", &input.name);
+        text.head("FUZZIFY", &input.name);
         if input.clamp {
             text.line(1, "LOCK : RANGE;");
         }
@@ -55,7 +55,7 @@ pub fn write(system: &System) -> Result<String, WriteError> {
         let merge = together.as_ref().and_then(|m| m.get(i).copied().flatten());
         rule_block(&mut text, system, block, merge)?;
     }
-    text.line(0, "END_FUNCTION_BLOCK");
+    text.head("END_FUNCTION_BLOCK", "");
     Ok(text.0)
 }
 
@@ -66,7 +66,7 @@ fn rule_block(
     merge: Option<Merge>,
 ) -> Result<(), WriteError> {
     word(&block.name, "rule block")?;
-    text.head(0, "RULEBLOCK", &block.name);
+    text.head("RULEBLOCK", &block.name);
     text.line(1, &format!("AND : {};", conjunction(block.and)));
     text.line(1, "OR : MAX;");
     text.line(1, &format!("ACT : {};", conjunction(block.implication)));
@@ -76,7 +76,7 @@ fn rule_block(
     for (i, one) in block.rules.iter().enumerate() {
         text.line(
             1,
-            &format!("RULE {} : {};", i + 1, rule(system, one, STYLE)),
+            &format!("RULE {} : {};", i + 1, rule(system, one, STYLE)?),
         );
     }
     text.line(0, "END_RULEBLOCK");
@@ -84,7 +84,7 @@ fn rule_block(
 }
 
 fn defuzzify(text: &mut Lines, output: &Output, merge: bool) -> Result<(), WriteError> {
-    text.head(0, "DEFUZZIFY", &output.name);
+    text.head("DEFUZZIFY", &output.name);
     text.line(1, &range(&output.range));
     if output.clamp {
         text.line(1, "LOCK : RANGE;");
@@ -125,11 +125,14 @@ impl Lines {
         self.0.push('\n');
     }
 
-    /// A line with a name that may be empty.
-    fn head(&mut self, indent: usize, word: &str, name: &str) {
+    /// The first line of a part, with a name that may be empty; a blank line before it.
+    fn head(&mut self, word: &str, name: &str) {
+        if !self.0.is_empty() {
+            self.0.push('\n');
+        }
         match name {
-            "" => self.line(indent, word),
-            name => self.line(indent, &format!("{word} {name}")),
+            "" => self.line(0, word),
+            name => self.line(0, &format!("{word} {name}")),
         }
     }
 }

@@ -92,7 +92,7 @@ pub fn write(system: &System) -> Result<String, WriteError> {
         );
         line(&mut text, "  ", "activation", "General");
         for one in &block.rules {
-            line(&mut text, "  ", "rule", &rule(system, one, STYLE));
+            line(&mut text, "  ", "rule", &rule(system, one, STYLE)?);
         }
     }
     Ok(text)
