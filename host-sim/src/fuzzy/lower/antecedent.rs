@@ -46,12 +46,7 @@ pub fn conjunctions(
     Ok(all)
 }
 
-fn literal(
-    input: usize,
-    term: usize,
-    negated: bool,
-    place: Place,
-) -> Result<Literal, LowerError> {
+fn literal(input: usize, term: usize, negated: bool, place: Place) -> Result<Literal, LowerError> {
     let (Ok(input), Ok(term)) = (u8::try_from(input), u8::try_from(term)) else {
         return Err(LowerError::TooMany {
             place,

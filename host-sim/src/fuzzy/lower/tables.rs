@@ -131,11 +131,7 @@ impl Tables {
             .iter()
             .map(|this| output(this, model, &inputs))
             .collect::<Result<_, _>>()?;
-        let blocks = model
-            .blocks
-            .iter()
-            .map(block)
-            .collect::<Result<_, _>>()?;
+        let blocks = model.blocks.iter().map(block).collect::<Result<_, _>>()?;
         Ok(Self {
             name: model.name.clone(),
             inputs,
@@ -267,9 +263,8 @@ impl<'a> Terms<'a> {
 
 fn input(input: &model::Input) -> Result<Input, LowerError> {
     let numbers = input.terms.iter().flat_map(|term| anchors(&term.shape));
-    let format = format(&input.range, numbers).ok_or_else(|| {
-        no_format(input.place, format!("the input `{}`", input.name))
-    })?;
+    let format = format(&input.range, numbers)
+        .ok_or_else(|| no_format(input.place, format!("the input `{}`", input.name)))?;
     Ok(Input {
         name: input.name.clone(),
         format,
@@ -333,7 +328,11 @@ fn rule(rule: &model::Rule) -> Result<Rule, LowerError> {
         let (Ok(output), Ok(term)) = places else {
             return Err(LowerError::TooMany {
                 place: rule.place,
-                what: format!("the rule concludes term {} of output {}", term + 1, output + 1),
+                what: format!(
+                    "the rule concludes term {} of output {}",
+                    term + 1,
+                    output + 1
+                ),
                 limit: "255 outputs with 255 terms are possible".into(),
             });
         };
@@ -410,9 +409,10 @@ fn defuzzifier(
     let merge = merge(output.merge);
     let (points, sampling) = match output.defuzzifier {
         model::Defuzzifier::WeightedAverage => {
-            let terms = output.terms.iter().map(|term| {
-                Ok((term.name.clone(), number(term, format, inputs)?))
-            });
+            let terms = output
+                .terms
+                .iter()
+                .map(|term| Ok((term.name.clone(), number(term, format, inputs)?)));
             return Ok(Defuzzifier::WeightedAverage {
                 merge,
                 terms: terms.collect::<Result<_, _>>()?,

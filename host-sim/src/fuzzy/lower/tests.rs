@@ -26,7 +26,8 @@ fn stats() {
                     .zip(&lowered.tables().inputs)
                     .map(|(i, l)| {
                         let (a, b) = (*i.range.start(), *i.range.end());
-                        l.format.value(l.format.nearest(a + (b - a) * rng.random_range(0.0..=1.0)))
+                        l.format
+                            .value(l.format.nearest(a + (b - a) * rng.random_range(0.0..=1.0)))
                     })
                     .collect();
                 let (a, b) = (exact.evaluate(&x), fixed.evaluate(&x));
@@ -37,7 +38,14 @@ fn stats() {
                 for ((p, q), o) in a.outputs.iter().zip(&b.outputs).zip(&model.outputs) {
                     if let (Some(p), Some(q)) = (p, q) {
                         let e = (p - q).abs() / (o.range.end() - o.range.start());
-                        let kind = if matches!(o.defuzzifier, crate::fuzzy::model::Defuzzifier::WeightedAverage) {"avg"} else {"cen"};
+                        let kind = if matches!(
+                            o.defuzzifier,
+                            crate::fuzzy::model::Defuzzifier::WeightedAverage
+                        ) {
+                            "avg"
+                        } else {
+                            "cen"
+                        };
                         all.push((e, w, n, kind));
                     }
                 }
@@ -45,11 +53,28 @@ fn stats() {
         });
     }
     for kind in ["rule", "avg", "cen"] {
-        for (lo, hi) in [(0.0, 1e-6), (1e-6, 1e-3), (1e-3, 1e-2), (1e-2, 0.1), (0.1, 1.01)] {
-            let mut v: Vec<_> = all.iter().filter(|a| a.3 == kind && a.1 >= lo && a.1 < hi).collect();
+        for (lo, hi) in [
+            (0.0, 1e-6),
+            (1e-6, 1e-3),
+            (1e-3, 1e-2),
+            (1e-2, 0.1),
+            (0.1, 1.01),
+        ] {
+            let mut v: Vec<_> = all
+                .iter()
+                .filter(|a| a.3 == kind && a.1 >= lo && a.1 < hi)
+                .collect();
             v.sort_by(|a, b| a.0.total_cmp(&b.0));
-            if v.is_empty() { continue; }
-            println!("{kind} {lo}..{hi}: n {} median {:.1e} p99 {:.1e} max {:?}", v.len(), v[v.len() / 2].0, v[v.len() * 99 / 100].0, v[v.len() - 1]);
+            if v.is_empty() {
+                continue;
+            }
+            println!(
+                "{kind} {lo}..{hi}: n {} median {:.1e} p99 {:.1e} max {:?}",
+                v.len(),
+                v[v.len() / 2].0,
+                v[v.len() * 99 / 100].0,
+                v[v.len() - 1]
+            );
         }
     }
 }
