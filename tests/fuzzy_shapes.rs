@@ -213,7 +213,7 @@ fn taken(x: i32) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn straight_terms_are_exact(n in ascending(4), degrees in prop::array::uniform4(0..=1u32 << 24)) {

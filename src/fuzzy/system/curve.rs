@@ -147,6 +147,8 @@ pub(super) const fn flank(
         let degree = match knot {
             SAMPLES => Degree::ZERO,
             0 => Degree::ONE,
+            // Of a curve that is narrower than a step, all of the peak.
+            _ if x == origin && !matches!(curve, Curve::Sigmoid) => Degree::ONE,
             // Halfway between the errors of the pieces that meet here; tails keep half their degree at least.
             _ if k > 0 && k + 1 < count => {
                 let before = deviation(&xs, &ys, knots[k - 1], knot);
