@@ -144,7 +144,11 @@ mod tests {
                     let wide = i128::from(value);
                     let half = i128::from(divisor / 2) * wide.signum();
                     let wanted = (wide + half) / i128::from(divisor);
-                    assert_eq!(i128::from(rounded(value, divisor)), wanted, "{value} / {divisor}");
+                    assert_eq!(
+                        i128::from(rounded(value, divisor)),
+                        wanted,
+                        "{value} / {divisor}"
+                    );
                 }
             }
         }

@@ -2,8 +2,8 @@
 
 use super::piece::membership;
 use super::{
-    Block, Defuzzifier, Flaw, Input, LIMIT, Linear, Literal, MAX_INPUTS, Merge, Number,
-    Output, Rule, Samples, Set, Term,
+    Block, Defuzzifier, Flaw, Input, LIMIT, Linear, Literal, MAX_INPUTS, Merge, Number, Output,
+    Rule, Samples, Set, Term,
 };
 
 const MAX_TERMS: usize = 255;

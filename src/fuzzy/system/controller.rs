@@ -55,7 +55,7 @@ pub struct Evaluation<const R: usize, const O: usize> {
 impl<const R: usize, const O: usize> Evaluation<R, O> {
     /// The rules with a degree above zero: their places, through all blocks.
     pub fn fired(&self) -> impl Iterator<Item = (usize, Degree)> + '_ {
-        let rules = self.rules.iter().copied().enumerate();
+        let rules = (0..R).zip(self.rules.iter().copied());
         rules.filter(|&(_, degree)| degree > Degree::ZERO)
     }
 }

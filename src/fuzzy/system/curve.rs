@@ -20,7 +20,7 @@ pub(super) enum Curve {
 }
 
 /// Samples a flank, less one.
-const SAMPLES: usize = 256;
+const SAMPLES: usize = 512;
 const ONE: i64 = 1 << 32;
 /// Where e^−x is half a step of a degree: 25 · ln 2.
 const END: i64 = 74_425_881_946;
@@ -54,7 +54,14 @@ impl Curve {
                 let t = ONE * i / n;
                 let rest = if 2 * i > n { ONE - t } else { t };
                 let parabola = ((rest as i128 * rest as i128) >> 33) as i64;
-                (t, if 2 * i > n { parabola } else { (1 << 30) - parabola })
+                (
+                    t,
+                    if 2 * i > n {
+                        parabola
+                    } else {
+                        (1 << 30) - parabola
+                    },
+                )
             }
         }
     }
@@ -99,8 +106,14 @@ pub(super) const fn flank(
     at: usize,
 ) {
     const FAR: i64 = 1 << 40;
-    assert!(origin >= -LIMIT && origin <= LIMIT, "a term's number is too large");
-    assert!(scale != 0 && scale >= -FAR && scale <= FAR, "a curve's width is not zero, and at most 2^40 steps");
+    assert!(
+        origin >= -LIMIT && origin <= LIMIT,
+        "a term's number is too large"
+    );
+    assert!(
+        scale != 0 && scale >= -FAR && scale <= FAR,
+        "a curve's width is not zero, and at most 2^40 steps"
+    );
     let mut xs = [0; SAMPLES + 1];
     let mut ys = [0; SAMPLES + 1];
     // Samples that are numbers of the system: one may be beyond it, at its edge.
@@ -134,12 +147,52 @@ pub(super) const fn flank(
         let degree = match knot {
             SAMPLES => Degree::ZERO,
             0 => Degree::ONE,
-            _ => Degree::from_bits(((ys[knot] + 32) >> 6) as u32),
+            // Of a curve that is narrower than a step, all of the peak.
+            _ if x == origin && !matches!(curve, Curve::Sigmoid) => Degree::ONE,
+            // Halfway between the errors of the pieces that meet here; tails keep half their degree at least.
+            _ if k > 0 && k + 1 < count => {
+                let before = deviation(&xs, &ys, knots[k - 1], knot);
+                let behind = deviation(&xs, &ys, knot, knots[k + 1]);
+                let y = ys[knot] - (before + behind) / 4;
+                let y = if y < ys[knot] / 2 { ys[knot] / 2 } else { y };
+                rounded(y)
+            }
+            _ => rounded(ys[knot]),
         };
-        let slot = if scale > 0 { at + k } else { at + count - 1 - k };
+        let slot = if scale > 0 {
+            at + k
+        } else {
+            at + count - 1 - k
+        };
         all[slot] = (x, degree);
         k += 1;
     }
+}
+
+/// A value with 30 fractional bits.
+const fn rounded(y: i64) -> Degree {
+    let y = (y + 32) >> 6;
+    if y < 0 {
+        Degree::ZERO
+    } else {
+        Degree::from_bits(y as u32)
+    }
+}
+
+/// What a straight line between two samples has too much, where it is worst; negative if it has too little.
+const fn deviation(xs: &[i64], ys: &[i64], from: usize, to: usize) -> i64 {
+    let mut worst = 0i64;
+    let width = (xs[to] - xs[from]) as i128;
+    let mut i = from + 1;
+    while i < to && width > 0 {
+        let rise = (ys[to] - ys[from]) as i128 * (xs[i] - xs[from]) as i128 / width;
+        let over = ys[from] + rise as i64 - ys[i];
+        if over.unsigned_abs() > worst.unsigned_abs() {
+            worst = over;
+        }
+        i += 1;
+    }
+    worst
 }
 
 const fn is_near(x: i128) -> bool {
@@ -169,7 +222,9 @@ const fn knots(xs: &[i64], ys: &[i64], first: usize, last: usize, count: usize) 
     let mut at = first;
     let mut k = 1;
     while k + 1 < count {
-        let wanted = (total * k as u128 / (count as u128 - 1)) as u64;
+        // The first and the last piece meet the curve at one end exactly, so their errors are not halved: they are
+        // shorter by √½, in hundredths.
+        let wanted = (total * (100 * k as u128 - 29) / (100 * count as u128 - 158)) as u64;
         // One further at least, and one left for each that follows.
         at += 1;
         while at + (count - 1 - k) < last && bending[at] < wanted {

@@ -22,11 +22,9 @@ impl System<'_> {
     ) {
         let mut limited = [0; MAX_INPUTS];
         let mut places = terms.iter_mut();
-        for (i, input) in self.inputs.iter().enumerate() {
+        for ((input, taken), i) in self.inputs.iter().zip(&mut limited).zip(0..MAX_INPUTS) {
             let x = input.limited(inputs.get(i).copied().unwrap_or(0));
-            if let Some(place) = limited.get_mut(i) {
-                *place = x;
-            }
+            *taken = x;
             for (term, place) in input.terms.iter().zip(&mut places) {
                 *place = membership(term, x);
             }
@@ -41,7 +39,9 @@ impl System<'_> {
             blocks: self.blocks,
             degrees: rules,
         };
-        for (i, (output, place)) in self.outputs.iter().zip(outputs).enumerate() {
+        // No `enumerate`: it counts with a check.
+        let count = self.outputs.len();
+        for ((output, place), i) in self.outputs.iter().zip(outputs).zip(0..count) {
             let (value, weight) = match output.defuzzifier {
                 Defuzzifier::WeightedAverage { merge, terms } => {
                     fired.average(i, merge, terms, &limited)
@@ -124,7 +124,7 @@ impl Fired<'_> {
         inputs: &[i32],
     ) -> (i32, u64) {
         let (mut sum, mut weight) = (0i64, 0u64);
-        for (i, number) in terms.iter().enumerate() {
+        for (number, i) in terms.iter().zip(0..terms.len()) {
             let mut merged = 0u64;
             self.conclusions(output, |term, degree, _| {
                 if usize::from(term) == i {

@@ -376,7 +376,10 @@ mod tests {
             terms: [255; 4],
             inputs: 4,
         };
-        assert!(hole.to_string().ends_with("255, 255, 255, 255 of the inputs"));
+        assert!(
+            hole.to_string()
+                .ends_with("255, 255, 255, 255 of the inputs")
+        );
         for (flaw, end) in [
             (
                 Flaw::Coefficients {

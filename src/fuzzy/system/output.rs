@@ -115,13 +115,19 @@ impl Samples {
 
     /// `count` samples from end to end, both included: 2 to [`Samples::MOST`].
     pub const fn ends(range: [i32; 2], count: usize) -> Self {
-        assert!(count >= 2 && count <= Self::MOST, "a centroid takes 2 to 1024 samples");
+        assert!(
+            count >= 2 && count <= Self::MOST,
+            "a centroid takes 2 to 1024 samples"
+        );
         Self::spread(range, count, count as u64 - 1, 0)
     }
 
     /// `count` samples in the middles of as many equal parts: 2 to [`Samples::MOST`].
     pub const fn middles(range: [i32; 2], count: usize) -> Self {
-        assert!(count >= 2 && count <= Self::MOST, "a centroid takes 2 to 1024 samples");
+        assert!(
+            count >= 2 && count <= Self::MOST,
+            "a centroid takes 2 to 1024 samples"
+        );
         Self::spread(range, count, count as u64, 1 << (Self::FRACTION - 1))
     }
 
