@@ -35,8 +35,8 @@ const FIRST_BOXES: usize = 2_000;
 /// How near, as a share of the greatest.
 const NEAR: f64 = 0.7;
 /// Boxes that are looked at more, fewer of a costly system.
-const MOST_BOXES: usize = 60_000;
-const MOST_WORK: usize = 400_000_000;
+const MOST_BOXES: usize = 20_000;
+const MOST_WORK: usize = 100_000_000;
 /// Values along an input at which its terms are compared, and parts in which the greatest difference is kept.
 const VALUES: usize = 16_384;
 const PARTS: usize = 1024;
