@@ -41,6 +41,7 @@
 mod inference;
 mod partition;
 mod rules;
+pub mod system;
 
 pub use inference::{Activation, Antecedents, FiredRule};
 pub use partition::{Grade, Membership, Partition};
