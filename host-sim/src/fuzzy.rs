@@ -2,10 +2,13 @@
 //! point, written again. They need no robot.
 
 pub mod check;
+pub mod describe;
 pub mod evaluate;
+pub mod files;
 pub mod lower;
 pub mod membership;
 pub mod model;
+pub mod picture;
 pub mod random;
 
 #[cfg(test)]

@@ -5,18 +5,23 @@
 //! fixed point on a dense [`Grid`].
 
 mod accuracy;
+mod bound;
 mod coverage;
 mod dominance;
 mod grid;
+mod jumps;
 mod turns;
 
-pub use accuracy::{Accuracy, Class, STRENGTHS, strength};
+pub use accuracy::{Accuracy, Class, STRENGTHS, class, strength};
+pub use bound::{Bounds, bounds};
 pub use coverage::{Coverage, Gap, Stretch, coverage};
 pub use dominance::Dominance;
 pub use grid::{Grid, POINTS};
+pub use jumps::Jumps;
 pub use turns::{Turn, turns};
 
 use super::evaluate::{Evaluator, Exact, rules};
+use super::lower::Lowered;
 use super::model::{Antecedent, System};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -37,31 +42,49 @@ pub struct Report {
     /// Points of the grid.
     pub points: usize,
     /// The error of fixed point, an entry an output; `None` without fixed point.
-    pub accuracy: Option<Vec<Accuracy>>,
+    pub errors: Option<Vec<Errors>>,
+}
+
+/// The error of an output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Errors {
+    /// As it was measured on the grid.
+    pub measured: Accuracy,
+    /// What it is nowhere above, for each of [`STRENGTHS`]: see [`bounds`].
+    pub bounds: [f64; STRENGTHS.len()],
 }
 
 /// Checks a system, and its fixed point against `f64`, on a grid of about so many points.
-pub fn check(system: &System, fixed: Option<&dyn Evaluator>, points: usize) -> Report {
+pub fn check(system: &System, lowered: Option<&Lowered>, points: usize) -> Report {
     let grid = Grid::new(system, points);
+    let (dominance, errors) = match lowered {
+        None => (sweep(system, None, &grid).0, None),
+        Some(lowered) => {
+            let jumps = Jumps::of(system, lowered);
+            let (dominance, measured) =
+                lowered.open(|fixed| sweep(system, Some((&fixed, &jumps)), &grid));
+            let both = measured.into_iter().zip(bounds(system, lowered));
+            let errors = both.map(|(measured, bounds)| Errors { measured, bounds });
+            (dominance, Some(errors.collect()))
+        }
+    };
     let coverage = coverage(system);
-    let (dominance, accuracy) = sweep(system, fixed, &grid);
     Report {
         dominated: dominance.dominated(),
         unasked: unasked(system),
         unconcluded: unconcluded(system, coverage.as_ref()),
         turns: turns(system),
         points: grid.len(),
-        accuracy: fixed.map(|_| accuracy),
         coverage,
+        errors,
     }
 }
 
+/// Fixed point, and where not to compare it.
+type Compared<'a> = (&'a dyn Evaluator, &'a Jumps);
+
 /// Looks at every point once.
-fn sweep(
-    system: &System,
-    fixed: Option<&dyn Evaluator>,
-    grid: &Grid,
-) -> (Dominance, Vec<Accuracy>) {
+fn sweep(system: &System, fixed: Option<Compared<'_>>, grid: &Grid) -> (Dominance, Vec<Accuracy>) {
     let exact = Exact::new(system);
     let none = || {
         (
@@ -79,7 +102,7 @@ fn sweep(
                 let point = grid.point(index);
                 let evaluation = exact.evaluate(&point);
                 dominance.see(&evaluation);
-                if let Some(fixed) = fixed {
+                if let Some((fixed, _)) = fixed.filter(|(_, jumps)| !jumps.near(&point)) {
                     let found = fixed.evaluate(&point);
                     Accuracy::see(&mut accuracy, system, &point, &evaluation, &found);
                 }
@@ -138,6 +161,7 @@ fn unconcluded(system: &System, coverage: Option<&Coverage>) -> Vec<(usize, usiz
 mod tests {
     use super::*;
     use crate::fuzzy::evaluate::Evaluation;
+    use crate::fuzzy::lower::lower;
     use crate::fuzzy::sample::{fan, rule};
 
     /// The exact values, off by `error` at 40 °C and 100 %.
@@ -156,14 +180,29 @@ mod tests {
     #[test]
     fn the_error_is_found_where_it_is() {
         let fan = fan();
-        let report = check(&fan, Some(&Off(Exact::new(&fan), 0.25)), 10_000);
-        let worst = &report.accuracy.unwrap()[0].classes[0];
+        let (grid, jumps) = (
+            Grid::new(&fan, 10_000),
+            Jumps::of(&fan, &lower(&fan).unwrap()),
+        );
+        let off = Off(Exact::new(&fan), 0.25);
+        let found = &sweep(&fan, Some((&off, &jumps)), &grid).1[0].classes[0];
         assert_eq!(
-            (worst.worst, worst.at.as_slice()),
+            (found.worst, found.at.as_slice()),
             (0.25, &[40.0, 100.0][..])
         );
-        assert!((worst.rms() - 0.25 / (worst.points as f64).sqrt()).abs() < 1e-12);
-        assert_eq!(worst.points, report.points);
+        assert!((found.rms() - 0.25 / (found.points as f64).sqrt()).abs() < 1e-12);
+        assert_eq!(found.points, grid.len());
+    }
+
+    #[test]
+    fn what_is_measured_is_within_the_bounds() {
+        let fan = fan();
+        let errors = check(&fan, lower(&fan).ok().as_ref(), 10_000)
+            .errors
+            .unwrap();
+        for (class, bound) in errors[0].measured.classes.iter().zip(errors[0].bounds) {
+            assert!(class.points > 1000 && class.worst > 0.0 && class.worst <= bound);
+        }
     }
 
     #[test]
@@ -193,7 +232,7 @@ mod tests {
                 report.unasked,
                 report.unconcluded,
                 report.turns,
-                report.accuracy
+                report.errors
             ),
             (vec![], vec![], vec![], vec![Some(vec![])], None)
         );

@@ -3,8 +3,8 @@
 use super::model::Shape;
 
 /// What is left of a smooth shape's tail below this counts as nothing where [`Shape::reaches`] is asked: half a step of
-/// a 15-bit degree, so that nothing of it is left in fixed point.
-pub const TAIL: f64 = 1.0 / 65_536.0;
+/// a 24-bit degree, so that nothing of it is left in fixed point.
+pub const TAIL: f64 = 1.0 / 33_554_432.0;
 
 impl Shape {
     /// The degree at `x`, 0 to 1. At a step of [`Shape::Points`] the later point counts, at the foot of an upright flank
@@ -70,6 +70,24 @@ impl Shape {
             | Self::Sigmoid { .. } => TAIL,
             _ => 0.0,
         }
+    }
+
+    /// Where the degree jumps, or is one at a single value.
+    pub fn jumps(&self) -> Vec<f64> {
+        let ends = match *self {
+            Self::Triangle { left, peak, right } => vec![(left, peak), (peak, right)],
+            Self::Trapezoid {
+                left,
+                rise,
+                fall,
+                right,
+            } => vec![(left, rise), (fall, right)],
+            Self::Singleton(at) => vec![(at, at)],
+            Self::Points(ref points) => points.windows(2).map(|two| (two[0].0, two[1].0)).collect(),
+            _ => Vec::new(),
+        };
+        let upright = ends.into_iter().filter(|(a, b)| a == b && a.is_finite());
+        upright.map(|(at, _)| at).collect()
     }
 
     /// Finite values, ascending, between which the degree only rises or only falls, and [`Shape::reaches`] and

@@ -94,6 +94,12 @@ impl Accuracy {
     }
 }
 
+/// The place of a strength among [`STRENGTHS`].
+pub fn class(strength: f64) -> usize {
+    let found = STRENGTHS.iter().position(|least| strength >= *least);
+    found.unwrap_or(STRENGTHS.len() - 1)
+}
+
 /// Degree of the strongest rule about an output.
 pub fn strength(system: &System, output: usize, evaluation: &Evaluation) -> f64 {
     rules(system)

@@ -8,6 +8,10 @@ pub const POINTS: usize = 100_000;
 /// Degrees and samples that a grid may cost before it gets thinner, and what it has at least all the same.
 const MOST_WORK: usize = 2_000_000_000;
 const LEAST_POINTS: usize = 2_000;
+/// With fewer even values an input than this, the knots are left out.
+const LEAST_EACH: usize = 5;
+/// How far beside a jump it is looked, of the range: some steps of fixed point.
+const BESIDE: f64 = 1e-4;
 
 /// A grid over the ranges of all inputs.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,19 +21,36 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// About `points` points in all, evenly from end to end of each range; the knots of the terms, where the greatest errors
-    /// lie, come on top. Costly systems get fewer.
+    /// At most about `points` points, evenly from end to end of each range and at the knots of the terms, where the greatest
+    /// errors lie, as far as there is room for them. Costly systems get fewer.
     pub fn new(system: &System, points: usize) -> Self {
         let points = points.min((MOST_WORK / cost(system)).max(LEAST_POINTS));
-        let each = (points as f64)
-            .powf(1.0 / system.inputs.len().max(1) as f64)
-            .round() as usize;
+        let knots: Vec<Vec<f64>> = system.inputs.iter().map(knots).collect();
+        let size =
+            |each: usize| -> f64 { knots.iter().map(|of| (each + of.len()) as f64).product() };
+        // The most values an input that leave it small enough.
+        let (mut each, mut above) = (1, points + 1);
+        while above - each > 1 {
+            let middle = each + (above - each) / 2;
+            if size(middle) <= points as f64 {
+                each = middle;
+            } else {
+                above = middle;
+            }
+        }
+        if each < LEAST_EACH {
+            let all = (points as f64).powf(1.0 / system.inputs.len().max(1) as f64);
+            return Self::even(system, all as usize);
+        }
+        let axes = system.inputs.iter().zip(knots).map(|(input, knots)| {
+            let mut axis = even(input, each);
+            axis.extend(knots);
+            axis.sort_by(f64::total_cmp);
+            axis.dedup();
+            axis
+        });
         Self {
-            axes: system
-                .inputs
-                .iter()
-                .map(|input| with_knots(input, each.max(2)))
-                .collect(),
+            axes: axes.collect(),
         }
     }
 
@@ -85,13 +106,20 @@ fn even(input: &Input, each: usize) -> Vec<f64> {
         .collect()
 }
 
-fn with_knots(input: &Input, each: usize) -> Vec<f64> {
-    let mut axis = even(input, each);
-    let knots = input.terms.iter().flat_map(|term| term.shape.knots());
-    axis.extend(knots.filter(|x| input.range.contains(x)));
-    axis.sort_by(f64::total_cmp);
-    axis.dedup();
-    axis
+/// The terms' knots in the range, ascending, and both sides of their jumps.
+fn knots(input: &Input) -> Vec<f64> {
+    let beside = (input.range.end() - input.range.start()) * BESIDE;
+    let terms = || input.terms.iter().map(|term| &term.shape);
+    let mut knots: Vec<f64> = terms().flat_map(|shape| shape.knots()).collect();
+    knots.extend(
+        terms()
+            .flat_map(|shape| shape.jumps())
+            .flat_map(|x| [x - beside, x + beside]),
+    );
+    knots.retain(|x| input.range.contains(x));
+    knots.sort_by(f64::total_cmp);
+    knots.dedup();
+    knots
 }
 
 /// What one evaluation costs, about: degrees of rules and samples of sets.
@@ -123,7 +151,7 @@ mod tests {
             .iter()
             .zip([vec![18.0, 24.0, 32.0], vec![30.0, 80.0]])
         {
-            assert!(axis.len() >= 100 && axis.is_sorted());
+            assert!(axis.len() >= 95 && axis.is_sorted());
             assert!(knots.iter().all(|knot| axis.contains(knot)));
         }
         let plain = Grid::even(&fan(), 3);

@@ -3,6 +3,7 @@
 
 use crate::fuzzy::evaluate::{rules, samples};
 use crate::fuzzy::model::{Antecedent, Conclusion, Input, Output, System};
+use crate::fuzzy::picture;
 use std::collections::BTreeMap;
 
 /// Where the conclusions turn.
@@ -78,16 +79,9 @@ fn height(output: &Output, conclusion: &Conclusion) -> Option<f64> {
 
 /// An input's terms from left to right, by the middle of where they are highest.
 fn order(input: &Input) -> Vec<usize> {
-    let (start, end) = (*input.range.start(), *input.range.end());
     let middle = |term: usize| {
-        let shape = &input.terms[term].shape;
-        let mut places: Vec<f64> = shape.knots().iter().map(|x| x.clamp(start, end)).collect();
-        places.extend([start, end]);
-        let highest = places.iter().map(|&x| shape.degree(x)).fold(0.0, f64::max);
-        places.retain(|&x| shape.degree(x) >= highest - 1e-9);
-        let least = places.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        least + (most - least) / 2.0
+        // One out of reach is in no order; it is nowhere in the table's ranges either.
+        picture::middle(&input.terms[term].shape, &input.range).unwrap_or(f64::INFINITY)
     };
     let mut order: Vec<usize> = (0..input.terms.len()).collect();
     order.sort_by(|&a, &b| middle(a).total_cmp(&middle(b)));
