@@ -38,6 +38,8 @@
 //! assert_eq!(FAN.defuzzify(&activation), I8F8::lit("45"));
 //! ```
 
+#[cfg(dsp)]
+mod dsp;
 mod even;
 mod inference;
 mod partition;
@@ -46,6 +48,7 @@ mod reciprocal;
 mod rules;
 mod scale;
 mod twin;
+mod weigh;
 
 pub use even::Position;
 pub use inference::{Activation, ActiveRules, Antecedents, FiredRule};

@@ -8,22 +8,16 @@
 //! A [`TwinTable`] says what the same two [`RuleTable`]s say. It costs the same instructions for every input, divides
 //! once or, on a processor that cannot, not at all, and gives the same integers everywhere.
 
-use super::even::{FULL, Place, Position, are_even};
+use super::even::{Place, Position, are_even};
 use super::product::mean;
 use super::reciprocal::reciprocal;
-use super::{Activation, Antecedents, Grade, RuleTable};
+use super::weigh::{Edge, Weighed, weigh};
+use super::{Activation, Antecedents, RuleTable};
 
 /// Two complete rule tables of `R × C` rules over even partitions. `GAPS` is `R − 1`.
 #[derive(Clone, Debug)]
 pub struct TwinTable<const R: usize, const C: usize, const GAPS: usize> {
     edges: [[Edge; C]; GAPS],
-}
-
-/// Two rules one above the other: their peaks in both outputs, negated, the upper row's in the lower half.
-#[derive(Clone, Copy, Debug)]
-struct Edge {
-    first: u32,
-    second: u32,
 }
 
 /// What one evaluation gives.
@@ -99,14 +93,33 @@ impl<const R: usize, const C: usize, const GAPS: usize> TwinTable<R, C, GAPS> {
     /// exact mean over the grades.
     #[inline(always)]
     pub fn evaluate(&self, rows: Position, cols: Position) -> Twin<R, C> {
+        #[cfg(dsp)]
+        return self.evaluate_by(super::dsp::weigh, rows, cols);
+        #[cfg(not(dsp))]
+        return self.evaluate_plain(rows, cols);
+    }
+
+    /// [`evaluate`](Self::evaluate) without any processor's own instructions: the same result on every one.
+    #[inline(always)]
+    pub fn evaluate_plain(&self, rows: Position, cols: Position) -> Twin<R, C> {
+        self.evaluate_by(weigh, rows, cols)
+    }
+
+    #[inline(always)]
+    fn evaluate_by(
+        &self,
+        weigh: impl Fn(&Place, &Place, Edge, Edge) -> Weighed,
+        rows: Position,
+        cols: Position,
+    ) -> Twin<R, C> {
         let (row, col) = (rows.place::<R>(), cols.place::<C>());
-        let weights = Weights::new(&row, &col);
         let [left, right] = self.edges_at(row.lower, col.lower);
-        let reciprocal = reciprocal(weights.excess);
+        let weighed = weigh(&row, &col, left, right);
+        let reciprocal = reciprocal(weighed.excess);
         Twin {
-            first: mean(weights.sum(left.first, right.first), reciprocal),
-            second: mean(weights.sum(left.second, right.second), reciprocal),
-            activation: Activation::at(row.lower, col.lower, weights.grades()),
+            first: mean(weighed.sums[0], reciprocal),
+            second: mean(weighed.sums[1], reciprocal),
+            activation: Activation::at(row.lower, col.lower, weighed.grades()),
         }
     }
 
@@ -129,65 +142,4 @@ const fn pair<const R: usize, const C: usize>(
 /// No peak is the least 16-bit number: see [`Consequents`](super::Consequents).
 const fn negated(peak: i16) -> u32 {
     peak.wrapping_neg() as u16 as u32
-}
-
-/// The four rules' degrees, negated, 0 to [`FULL`]: row by row, left before right.
-#[derive(Clone, Copy, Debug)]
-struct Weights {
-    degrees: [i32; 4],
-    /// With f and g the two upper grades, min(f, 1 − f, g, 1 − g): Σw is one and twice this.
-    excess: u32,
-}
-
-impl Weights {
-    /// Two minima are enough: 1 − max(f, g) = 1 − f − g + min(f, g), and likewise with 1 − f for f.
-    #[inline(always)]
-    fn new(row: &Place, col: &Place) -> Self {
-        let (f, g) = (row.upper, col.upper);
-        let below_right = weaker(f, g);
-        let above_right = weaker(FULL.wrapping_sub(f), g);
-        let above_left = FULL
-            .wrapping_sub(f)
-            .wrapping_sub(g)
-            .wrapping_add(below_right);
-        let below_left = f.wrapping_sub(g).wrapping_add(above_right);
-        Self {
-            degrees: [above_left, above_right, below_left, below_right],
-            excess: g.wrapping_sub(below_right).wrapping_sub(above_right) as u32,
-        }
-    }
-
-    /// Σ w·peak, `left` and `right` as in an [`Edge`]: both factors negated, the product is not. |Σ| ≤ 2^16 · 32 767 <
-    /// 2^31 by the tables' own assertion.
-    #[inline(always)]
-    fn sum(&self, left: u32, right: u32) -> i32 {
-        let [above_left, above_right, below_left, below_right] = self.degrees;
-        let above = |peaks: u32| i32::from(peaks as i16);
-        let below = |peaks: u32| peaks as i32 >> 16;
-        weigh(above_left, above(left))
-            .wrapping_add(weigh(below_left, below(left)))
-            .wrapping_add(weigh(above_right, above(right)))
-            .wrapping_add(weigh(below_right, below(right)))
-    }
-
-    #[inline(always)]
-    fn grades(&self) -> [Grade; 4] {
-        self.degrees
-            .map(|w| Grade::from_bits((w as u16).wrapping_neg()))
-    }
-}
-
-/// The weaker of two negated grades, without a comparison: no compiler makes a branch of it.
-#[inline(always)]
-fn weaker(a: i32, b: i32) -> i32 {
-    let stronger = a.wrapping_sub(b);
-    b.wrapping_add(stronger & !(stronger >> 31))
-}
-
-#[inline(always)]
-fn weigh(degree: i32, peak: i32) -> i32 {
-    // It has 16 bits already. Where products of those cost less, the compiler must see it.
-    #[cfg(dsp)]
-    let degree = i32::from(degree as i16);
-    degree.wrapping_mul(peak)
 }
