@@ -1,5 +1,6 @@
 #![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(dsp), forbid(unsafe_code))]
+#![cfg_attr(dsp, deny(unsafe_code))]
 //! A fuzzy controller that drives a differential robot along a path and around obstacles: `no_std`, no allocation,
 //! fixed point, the same bits on every architecture.
 //!
