@@ -1,6 +1,8 @@
 //! Integer routines without a branch on the data: a Cortex-M0 has no conditional move, so a comparison would cost one
 //! instruction more or less by its outcome.
 
+use core::hint::black_box;
+
 /// All ones if negative, else zero.
 pub(super) const fn mask(x: i32) -> u32 {
     (x >> 31) as u32
@@ -20,14 +22,18 @@ pub(super) const fn most(a: u32, b: u32) -> u32 {
 
 /// `x`, or the end of `[low, high]` that it is beyond; `x` within 2^62.
 pub(super) const fn limited(x: i64, [low, high]: [i32; 2]) -> i32 {
-    let x = x.wrapping_sub(low as i64);
-    // Not below zero…
-    let x = x & !(x >> 63);
-    let span = i64::wrapping_sub(high as i64, low as i64);
-    // …and not beyond the span.
-    let over = span.wrapping_sub(x);
-    let x = x.wrapping_add(over & (over >> 63));
-    low.wrapping_add(x as i32)
+    // What is missing to the low end and what is left to the high one: each counts where it is negative.
+    let above = x.wrapping_sub(low as i64);
+    let left = i64::wrapping_sub(high as i64, x);
+    x.wrapping_sub(above & if_negative(above) as i64)
+        .wrapping_add(left & if_negative(left) as i64) as i32
+}
+
+/// All ones if negative, else zero, and the optimiser does not know it: of some masks it would make comparisons, and
+/// branches of these.
+#[inline(always)]
+pub(super) const fn if_negative(x: i64) -> i32 {
+    black_box((x >> 63) as i32)
 }
 
 /// `value` and `divisor` halved as often as it takes to bring the divisor below 2^30. It is below 2^45, the value below
@@ -76,10 +82,11 @@ pub(super) const fn quotient(value: u64, divisor: u32) -> u32 {
 /// `value / divisor`, rounded to nearest, ties away from zero, by way of [`reduced`]: exact for a divisor below 2^30. The
 /// quotient is below 2^31 in magnitude, and so is the magnitude of the value below 2^63.
 pub(super) const fn rounded(value: i64, divisor: u64) -> i32 {
-    let (value_, divisor) = reduced(value.unsigned_abs(), divisor);
-    let quotient = quotient(value_.wrapping_add((divisor >> 1) as u64), divisor);
-    let sign = (value >> 63) as u32;
-    (quotient ^ sign).wrapping_sub(sign) as i32
+    let sign = if_negative(value);
+    let magnitude = (value ^ sign as i64).wrapping_sub(sign as i64) as u64;
+    let (magnitude, divisor) = reduced(magnitude, divisor);
+    let quotient = quotient(magnitude.wrapping_add((divisor >> 1) as u64), divisor) as i32;
+    (quotient ^ sign).wrapping_sub(sign)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! From inputs to outputs, with the same work for every input: loops run over the tables alone, and nothing is left out
 //! because a degree is zero.
 
-use super::arithmetic::{limited, quotient, reduced, rounded};
+use super::arithmetic::{if_negative, limited, quotient, reduced, rounded};
 use super::piece::membership;
 use super::{Block, Defuzzifier, Degree, Literal, Merge, Norm, Number, Rule, Samples, Set, System};
 use crate::fuzzy::Grade;
@@ -54,7 +54,7 @@ impl System<'_> {
             };
             let value = self::limited(value.into(), output.range);
             // All ones where nothing fired.
-            let silent = ((weight as i64).wrapping_sub(1) >> 63) as i32;
+            let silent = if_negative((weight as i64).wrapping_sub(1));
             *place = (output.default & silent) | (value & !silent);
         }
     }
@@ -124,22 +124,31 @@ impl Fired<'_> {
         inputs: &[i32],
     ) -> (i32, u64) {
         let (mut sum, mut weight) = (0i64, 0u64);
-        for (number, i) in terms.iter().zip(0..terms.len()) {
-            let mut merged = 0u64;
-            self.conclusions(output, |term, degree, _| {
-                if usize::from(term) == i {
-                    merged = match merge {
-                        Merge::Sum => merged.wrapping_add(degree.bits().into()),
-                        Merge::Max => Degree::known(merged as u32).most(degree).bits().into(),
-                    };
-                }
-            });
+        let mut add = |degree: u32, number: &Number<'_>| {
             let value = match number {
                 Number::Constant(value) => *value,
                 Number::Linear(linear) => linear.at(inputs),
             };
-            sum = sum.wrapping_add((merged as i64).wrapping_mul(value.into()));
-            weight = weight.wrapping_add(merged);
+            sum = sum.wrapping_add(i64::from(degree as i32).wrapping_mul(value.into()));
+            weight = weight.wrapping_add(degree.into());
+        };
+        match merge {
+            Merge::Sum => self.conclusions(output, |term, degree, _| {
+                if let Some(number) = terms.get(usize::from(term)) {
+                    add(degree.bits(), number);
+                }
+            }),
+            Merge::Max => {
+                for (number, i) in terms.iter().zip(0..terms.len()) {
+                    let mut merged = Degree::ZERO;
+                    self.conclusions(output, |term, degree, _| {
+                        if usize::from(term) == i {
+                            merged = merged.most(degree);
+                        }
+                    });
+                    add(merged.bits(), number);
+                }
+            }
         }
         (rounded(sum, weight), weight)
     }

@@ -2,6 +2,7 @@
 
 use super::Degree;
 use super::arithmetic::mask;
+use core::hint::black_box;
 
 /// The largest magnitude of a number of a system, in its own steps; inputs beyond it count as it.
 ///
@@ -90,21 +91,31 @@ impl Piece {
 /// until one is left. A term without a piece is nothing.
 #[inline]
 pub(super) const fn membership(term: Term<'_>, x: i32) -> Degree {
-    let mut first = 0usize;
-    let mut left = term.len();
-    while left > 1 {
-        let half = left >> 1;
-        let middle = first.wrapping_add(half);
-        if middle < term.len() {
-            // All ones from the middle piece on.
-            let behind = !mask(x.wrapping_sub(term[middle].from));
-            first = first.wrapping_add(half & behind as usize);
-        }
-        left = left.wrapping_sub(half);
+    let Some(mut power) = term.len().checked_ilog2() else {
+        return Degree::ZERO;
+    };
+    // Either the first 2^power pieces or the last as many.
+    let rest = term.len().wrapping_sub(1usize.wrapping_shl(power));
+    // The optimiser would make a comparison of it, and a branch of that.
+    let mut first = rest.wrapping_mul(black_box(is_from(term, rest, x)));
+    while power > 0 {
+        power = power.wrapping_sub(1);
+        let middle = first.wrapping_add(1usize.wrapping_shl(power));
+        first = first.wrapping_add(is_from(term, middle, x).wrapping_shl(power));
     }
     if first < term.len() {
         term[first].at(x)
     } else {
         Degree::ZERO
+    }
+}
+
+/// 1 if piece `i` begins at `x` or before it, else 0; a piece that there is not begins nowhere.
+#[inline]
+const fn is_from(term: Term<'_>, i: usize, x: i32) -> usize {
+    if i < term.len() {
+        (x.wrapping_sub(term[i].from) as u32 >> 31 ^ 1) as usize
+    } else {
+        0
     }
 }
