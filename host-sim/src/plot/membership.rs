@@ -2,11 +2,10 @@
 
 use super::axis::Axis;
 use super::{
-    CENTRED, Canvas, FROM_LEFT, FROM_RIGHT, Hang, INK, MUTED, Panel, Point, Rect, document, fitted,
+    CENTRED, Canvas, FROM_LEFT, FROM_RIGHT, INK, MUTED, Panel, Point, Rect, document, fitted,
     shaded, text_width, viridis,
 };
 use anyhow::{Result, ensure};
-use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, RGBColor, WHITE};
 use std::ops::Range;
 
@@ -197,6 +196,11 @@ fn texts(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
         Form::Text(text) => Some((format!("{}: {text}", term.name), colour(index, count))),
         Form::Line(_) | Form::Stem(_) => None,
     });
+    let stems = variable.terms.iter().filter_map(|term| match term.form {
+        Form::Stem(at) => Some(panel.at(at, 0.0).0),
+        Form::Line(_) | Form::Text(_) => None,
+    });
+    let stems: Vec<f64> = stems.collect();
     for (place, (text, colour)) in words.enumerate() {
         // Six lines fill the panel; what a seventh term says is told by the file.
         let text = match place {
@@ -204,26 +208,27 @@ fn texts(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
             6 => "…".to_owned(),
             _ => break,
         };
-        let at = (
-            panel.rect.left + 18.0,
-            panel.rect.top + 26.0 + 22.0 * place as f64,
-        );
-        on_white(canvas, &text, at, colour, FROM_LEFT)?;
+        let width = text_width(&text, 14.0);
+        let left = free(&stems, panel.rect.left + 18.0, width, panel.rect.right);
+        let at = (left, panel.rect.top + 26.0 + 22.0 * place as f64);
+        let behind = Rect::new(left - 5.0, at.1 - 10.0, width + 10.0, 20.0);
+        canvas.block(&behind, WHITE.to_rgba())?;
+        canvas.text(&text, at, 14.0, colour, FROM_LEFT)?;
     }
     Ok(())
 }
 
-/// A text that hides what is behind it.
-fn on_white(canvas: &Canvas, text: &str, at: Point, colour: RGBColor, hang: Hang) -> Result<()> {
-    let width = text_width(text, 14.0);
-    let left = if matches!(hang.0, HPos::Right) {
-        at.0 - width
-    } else {
-        at.0
+/// Where something of this width stands clear of all stems, from the left; at the left if nowhere.
+fn free(stems: &[f64], left: f64, width: f64, right: f64) -> f64 {
+    let clear = |from: f64| {
+        let (first, last) = (from - 12.0, from + width + 12.0);
+        !stems.iter().any(|x| (first..=last).contains(x))
     };
-    let behind = Rect::new(left - 5.0, at.1 - 10.0, width + 10.0, 20.0);
-    canvas.block(&behind, WHITE.to_rgba())?;
-    canvas.text(text, at, 14.0, colour, hang)
+    (0..)
+        .map(|step| left + 20.0 * f64::from(step))
+        .take_while(|from| from + width < right)
+        .find(|from| clear(*from))
+        .unwrap_or(left)
 }
 
 fn colour(index: usize, count: usize) -> RGBColor {
@@ -330,9 +335,9 @@ fn names(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
     let nowhere: Vec<&str> = nowhere.map(|term| term.name.as_str()).collect();
     if !nowhere.is_empty() {
         let text = format!("out of this range: {}", nowhere.join(", "));
-        let text = fitted(&text, 14.0, panel.rect.width() - 40.0);
-        let at = (panel.rect.right - 18.0, panel.rect.top + 26.0);
-        on_white(canvas, &text, at, MUTED, FROM_RIGHT)?;
+        let text = fitted(&text, 12.5, panel.rect.width() / 2.5);
+        let at = (panel.rect.right, panel.rect.bottom + 36.0);
+        canvas.text(&text, at, 12.5, MUTED, FROM_RIGHT)?;
     }
     Ok(())
 }
