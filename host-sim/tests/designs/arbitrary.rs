@@ -136,6 +136,8 @@ fn output(inputs: usize) -> impl Strategy<Value = Output> {
         Just(Defuzzifier::WeightedAverage),
         centroid.prop_map(|(points, sampling)| Defuzzifier::Centroid { points, sampling }),
     ];
+    let wide = |s: &Shape| !matches!(s, Shape::Singleton(_));
+    let set = shape().prop_filter("a set has a width", wide);
     let number_conclusion = prop_oneof![
         9 => number().prop_map(Conclusion::Constant),
         1 => (vec(number(), inputs), number()).prop_map(|(coefficients, constant)| {
@@ -149,7 +151,7 @@ fn output(inputs: usize) -> impl Strategy<Value = Output> {
         defuzzifier,
         select(vec![Merge::Sum, Merge::Max]),
         names("u", 1..=5),
-        (vec(shape(), 5), vec(number_conclusion, 5)),
+        (vec(set, 5), vec(number_conclusion, 5)),
     )
         .prop_map(
             |(range, clamp, default, defuzzifier, merge, names, (sets, numbers))| {
@@ -243,7 +245,7 @@ fn rule() -> impl Strategy<Value = Rule> {
 
 fn block() -> impl Strategy<Value = RuleBlock> {
     let conjunction = select(vec![Conjunction::Min, Conjunction::Product]);
-    let name = prop_oneof![Just(String::new()), name("b")];
+    let name = prop_oneof![Just(String::new()), name("block")];
     (name, conjunction.clone(), conjunction, vec(rule(), 1..8)).prop_map(
         |(name, and, implication, rules)| RuleBlock {
             name,
@@ -263,7 +265,7 @@ pub fn system() -> impl Strategy<Value = System> {
             names("o", 3..=3),
         )
     });
-    let name = prop_oneof![Just(String::new()), name("s")];
+    let name = prop_oneof![Just(String::new()), name("system")];
     (name, variables, vec(block(), 1..4)).prop_map(
         |(name, (mut inputs, input_names, mut outputs, output_names), mut blocks)| {
             for (input, name) in inputs.iter_mut().zip(input_names) {

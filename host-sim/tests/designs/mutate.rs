@@ -127,7 +127,11 @@ fn mutate(good: &[Vec<u8>], random: &mut Pcg64Mcg) -> Vec<u8> {
 fn campaign(format: Format) {
     let is_one = |f: &std::path::PathBuf| Format::of(f) == Some(format);
     let all = designs().into_iter().chain(files("tests/designs/bad"));
-    let good: Vec<Vec<u8>> = all.filter(is_one).map(|f| fs::read(f).unwrap()).collect();
+    let good: Vec<Vec<u8>> = all
+        .filter(is_one)
+        .map(|f| fs::read(f).unwrap())
+        .filter(|bytes| !bytes.is_empty())
+        .collect();
     assert!(good.len() > 10, "seeds for {format:?}");
     let seconds = std::env::var("FUZZYPILOT_FUZZ_SECONDS")
         .ok()

@@ -2,10 +2,10 @@
 //! defuzzified, no rule twice.
 
 use super::cursor::Parameter;
-use super::error::{ReadError, Source, quoted};
+use super::error::{ReadError, Source, counted, quoted};
 use super::limits;
 use crate::fuzzy::model::{
-    Antecedent, Conclusion, Conjunction, Defuzzifier, Output, Place, RuleBlock, System,
+    Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Output, Place, RuleBlock, Shape,
 };
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -46,7 +46,7 @@ pub fn range(
     Ok(start.value..=end.value)
 }
 
-/// That a name is new: `earlier` are the ones before it.
+/// That something is named once: `earlier` are the names before it, `what` is "the term", "the key" and so on.
 pub fn unique<'n>(
     source: Source<'_>,
     what: &str,
@@ -62,7 +62,7 @@ pub fn unique<'n>(
                 quoted(name),
                 at.line
             );
-            Err(source.error(place, found, "a name of its own"))
+            Err(source.error(place, found, "each once"))
         }
     }
 }
@@ -81,40 +81,39 @@ pub fn count(
     }
 }
 
-/// A system that holds every promise of the model; `end` is where errors about something missing are shown.
-pub fn finish(source: Source<'_>, system: System, end: Place) -> Result<System, ReadError> {
-    let missing =
-        |what: &str, allowed: &str| Err(source.error(end, format!("there is no {what}"), allowed));
-    match system.inputs.get(limits::INPUTS) {
-        _ if system.inputs.is_empty() => {
-            return missing("input", &format!("1 to {} inputs", limits::INPUTS));
-        }
-        Some(input) => count(
-            source,
-            input.place,
-            "inputs",
-            system.inputs.len(),
-            limits::INPUTS,
-        )?,
-        None => {}
+/// That variables hold the model's promises; `end` is where a missing one is shown.
+pub fn variables(
+    source: Source<'_>,
+    inputs: &[Input],
+    outputs: &[Output],
+    end: Place,
+) -> Result<(), ReadError> {
+    let missing = |what: &str, most: usize| {
+        let found = format!("there is no {what}");
+        Err(source.error(end, found, format!("1 to {most} {what}s")))
+    };
+    if inputs.is_empty() {
+        return missing("input", limits::INPUTS);
     }
-    match system.outputs.get(limits::OUTPUTS) {
-        _ if system.outputs.is_empty() => {
-            return missing("output", &format!("1 to {} outputs", limits::OUTPUTS));
-        }
-        Some(output) => count(
+    if outputs.is_empty() {
+        return missing("output", limits::OUTPUTS);
+    }
+    if let Some(input) = inputs.get(limits::INPUTS) {
+        count(source, input.place, "inputs", inputs.len(), limits::INPUTS)?;
+    }
+    if let Some(output) = outputs.get(limits::OUTPUTS) {
+        count(
             source,
             output.place,
             "outputs",
-            system.outputs.len(),
+            outputs.len(),
             limits::OUTPUTS,
-        )?,
-        None => {}
+        )?;
     }
-    for input in &system.inputs {
+    for input in inputs {
         terms(source, "input", &input.name, input.place, input.terms.len())?;
     }
-    for output in &system.outputs {
+    for output in outputs {
         terms(
             source,
             "output",
@@ -122,15 +121,19 @@ pub fn finish(source: Source<'_>, system: System, end: Place) -> Result<System, 
             output.place,
             output.terms.len(),
         )?;
-        conclusions(source, output, system.inputs.len())?;
+        conclusions(source, output, inputs.len())?;
     }
-    if system.blocks.iter().all(|b| b.rules.is_empty()) {
-        return missing("rule that counts", "one or more rules");
+    Ok(())
+}
+
+/// That rules hold the model's promises; `end` is where a missing one is shown.
+pub fn rules(source: Source<'_>, blocks: &[RuleBlock], end: Place) -> Result<(), ReadError> {
+    let rules: usize = blocks.iter().map(|b| b.rules.len()).sum();
+    if rules == 0 {
+        return Err(source.error(end, "there is no rule that counts", "one or more rules"));
     }
-    let rules: usize = system.blocks.iter().map(|b| b.rules.len()).sum();
     count(source, end, "rules", rules, limits::RULES)?;
-    duplicates(source, &system.blocks)?;
-    Ok(system)
+    duplicates(source, blocks)
 }
 
 fn terms(
@@ -160,6 +163,11 @@ fn conclusions(source: Source<'_>, output: &Output, inputs: usize) -> Result<(),
                 let allowed = "a constant or a linear term; or a centroid for the output";
                 return Err(source.error(term.place, found, allowed));
             }
+            (Conclusion::Set(Shape::Singleton(_)), _) => {
+                let found =
+                    format!("the term {name} of {of} has no width: it has no part in a centroid");
+                return Err(source.error(term.place, found, "a set that has one"));
+            }
             (Conclusion::Constant(_) | Conclusion::Linear { .. }, Defuzzifier::Centroid { .. }) => {
                 let found = format!("the term {name} is no fuzzy set, but {of} takes a centroid");
                 let allowed = "a fuzzy set; or a weighted average for the output";
@@ -167,13 +175,10 @@ fn conclusions(source: Source<'_>, output: &Output, inputs: usize) -> Result<(),
             }
             (Conclusion::Linear { coefficients, .. }, _) if coefficients.len() != inputs => {
                 let found = format!(
-                    "the linear term {name} has {} numbers",
-                    coefficients.len() + 1
+                    "the linear term {name} has {}",
+                    counted(coefficients.len() + 1, "number")
                 );
-                let allowed = format!(
-                    "{}: one for each of the {inputs} inputs, and the constant",
-                    inputs + 1
-                );
+                let allowed = format!("{}: one for each input, and the constant", inputs + 1);
                 return Err(source.error(term.place, found, allowed));
             }
             _ => {}

@@ -199,15 +199,11 @@ impl<'s> Reader<'s, '_, '_> {
                 return Err(self.source.error(token.place, found, "a term's name"));
             }
             let term = self.term(false)?;
-            if let Some((earlier, _)) = all
+            if all
                 .iter()
-                .find(|(o, _): &&(Token, Token)| o.text == output.text)
+                .any(|(o, _): &(Token<'_>, _)| o.text == output.text)
             {
-                let line = earlier.place.line;
-                let found = format!(
-                    "this rule concludes {} twice, first in line {line}",
-                    quoted(output.text)
-                );
+                let found = format!("this rule concludes {} twice", quoted(output.text));
                 return Err(self.source.error(output.place, found, "each output once"));
             }
             all.push((output, term));

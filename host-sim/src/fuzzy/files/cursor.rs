@@ -45,7 +45,15 @@ impl<'s, 't> Cursor<'s, 't> {
         let token = self.peek();
         let found = match token.kind {
             Kind::End => format!("{} ends here", self.whole),
-            Kind::Open => format!("{} opens what is never closed", quoted(opening(token.text))),
+            Kind::Open => {
+                let (opening, closing) = closing(token.text);
+                let found = format!("`{opening}` opens what is never closed");
+                let allowed = match closing {
+                    "'" => "`'` at its end, on the same line".to_owned(),
+                    _ => format!("`{closing}` somewhere behind it"),
+                };
+                return self.source.error(token.place, found, allowed);
+            }
             Kind::Text => format!("found the text {}", quoted(token.text)),
             _ => format!("found {}", quoted(token.text)),
         };
@@ -124,7 +132,7 @@ impl<'s, 't> Cursor<'s, 't> {
         }
         if token.text.chars().count() > limits::NAME {
             let found = format!("the name {} is too long", quoted(token.text));
-            let allowed = format!("{} characters", limits::NAME);
+            let allowed = format!("at most {} characters", limits::NAME);
             return Err(self.source.error(token.place, found, allowed));
         }
         Ok(self.take())
@@ -192,8 +200,11 @@ fn number(token: Token<'_>) -> Option<f64> {
     }
 }
 
-/// What opens a comment or a text.
-fn opening(text: &str) -> &str {
-    let end = if text.starts_with('\'') { 1 } else { 2 };
-    text.get(..end).unwrap_or(text)
+/// What opens a comment or a text, and what would close it.
+fn closing(text: &str) -> (&'static str, &'static str) {
+    match text.as_bytes() {
+        [b'(', ..] => ("(*", "*)"),
+        [b'/', ..] => ("/*", "*/"),
+        _ => ("'", "'"),
+    }
 }

@@ -114,6 +114,9 @@ impl Source<'_> {
         /// What is kept before the mark.
         const LEAD: usize = 60;
         let line = lines(self.text).nth(place.line.checked_sub(1)?)?;
+        if line.trim().is_empty() {
+            return None;
+        }
         let before = place.column.saturating_sub(1);
         let skipped = before.saturating_sub(LEAD);
         let mut text = String::new();
@@ -126,13 +129,19 @@ impl Source<'_> {
             text.push('…');
         }
         // A mark is as wide as the word that it is under.
-        let width = line
-            .chars()
-            .skip(before)
-            .take(WIDTH - LEAD)
-            .take_while(|c| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+'))
-            .count()
-            .max(1);
+        let marked = line.chars().skip(before).take(WIDTH - LEAD);
+        let width = match marked.clone().next() {
+            // A text up to its closing quote.
+            Some('\'') => marked
+                .clone()
+                .skip(1)
+                .position(|c| c == '\'')
+                .map_or(1, |n| n + 2),
+            _ => marked
+                .take_while(|c| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+'))
+                .count()
+                .max(1),
+        };
         Some(Excerpt {
             text: text.trim_end().to_owned(),
             indent: before - skipped + usize::from(skipped > 0),
@@ -177,6 +186,14 @@ pub fn one_of<T: AsRef<str>>(names: impl IntoIterator<Item = T>) -> String {
         [only] => only.clone(),
         [first, second] => format!("{first} or {second}"),
         _ => format!("one of {}", shown.join(", ")),
+    }
+}
+
+/// "1 rule", "2 rules".
+pub fn counted(count: usize, what: &str) -> String {
+    match count {
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
     }
 }
 

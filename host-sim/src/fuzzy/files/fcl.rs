@@ -177,7 +177,7 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
     };
     reader.function_block()?;
     let end = reader.cursor.peek().place;
-    checks::finish(source, reader.system()?, end)
+    reader.system(end)
 }
 
 /// A range that may be given.
@@ -432,7 +432,7 @@ impl<'s> Reader<'s, '_> {
         match again {
             false => Ok(()),
             true => {
-                let found = format!("{} is given already", quoted(token.text));
+                let found = format!("{} is given twice", quoted(token.text));
                 Err(self.source.error(token.place, found, "each once"))
             }
         }
@@ -771,7 +771,7 @@ impl<'s> Reader<'s, '_> {
     }
 
     /// Puts together what was read.
-    fn system(self) -> Result<System, ReadError> {
+    fn system(self, end: Place) -> Result<System, ReadError> {
         let source = self.source;
         let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
         let mut merges = Vec::new();
@@ -786,7 +786,11 @@ impl<'s> Reader<'s, '_> {
             };
             let missing = || {
                 let found = format!("{} has no {part} block", quoted(name.text));
-                source.error(name.place, found, "one")
+                source.error(
+                    name.place,
+                    found,
+                    format!("`{part} {}` … `END_{part}`", name.text),
+                )
             };
             if declared.output {
                 let at = defuzzified
@@ -825,6 +829,7 @@ impl<'s> Reader<'s, '_> {
                 });
             }
         }
+        checks::variables(source, &inputs, &outputs, end)?;
         let mut blocks = Vec::new();
         for block in self.blocks.iter().filter(|b| b.enabled) {
             let rules = block.resolve(source, &inputs, &outputs)?;
@@ -843,6 +848,7 @@ impl<'s> Reader<'s, '_> {
                 }
             };
         }
+        checks::rules(source, &blocks, end)?;
         Ok(System {
             name: self.name,
             inputs,

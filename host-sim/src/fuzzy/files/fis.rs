@@ -7,7 +7,7 @@
 
 use super::checks;
 use super::cursor::{Cursor, Parameter};
-use super::error::{ReadError, Source, lines, one_of, quoted};
+use super::error::{ReadError, Source, counted, lines, one_of, quoted};
 use super::lexer::{Dialect, Kind, Token, lex};
 use super::limits;
 use super::norms::{Norm, concludes_set};
@@ -62,7 +62,11 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
     let sections = sections(source)?;
     let end = source.end();
     let Some(head) = sections.iter().find(|s| s.is("System")) else {
-        return Err(source.error(end, "there is no section `[System]`", "one, the first"));
+        return Err(source.error(
+            end,
+            "there is no section `[System]`",
+            "`[System]`, the first section",
+        ));
     };
     let settings = Settings::read(source, head)?;
     let (mut inputs, mut outputs, mut rules) = (Vec::new(), Vec::new(), None);
@@ -73,7 +77,7 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
             section,
             sugeno: settings.sugeno,
         };
-        let known = ["System", "Input", "Output", "Rules"];
+        let known = ["`[System]`", "`[Input1]`…", "`[Output1]`…", "`[Rules]`"];
         match (section.kind(), section.number()) {
             ("System", None) if std::ptr::eq(section, head) => {}
             ("Rules", None) if rules.is_none() => rules = Some(section),
@@ -124,22 +128,21 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
             }
         }
     }
-    settings.counted(
-        source,
-        "NumInputs",
-        settings.inputs,
-        inputs.len(),
-        "sections `[Input…]`",
-    )?;
+    settings.counted(source, "NumInputs", settings.inputs, inputs.len(), "input")?;
     settings.counted(
         source,
         "NumOutputs",
         settings.outputs,
         outputs.len(),
-        "sections `[Output…]`",
+        "output",
     )?;
+    checks::variables(source, &inputs, &outputs, end)?;
     let Some(section) = rules else {
-        return Err(source.error(end, "there is no section `[Rules]`", "one"));
+        return Err(source.error(
+            end,
+            "there is no section `[Rules]`",
+            "`[Rules]`, the last section",
+        ));
     };
     let mut reader = Rules {
         source,
@@ -153,7 +156,7 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
         all.push(reader.rule(line)?);
         checks::count(source, line.place, "rules", all.len(), limits::RULES)?;
     }
-    settings.counted(source, "NumRules", settings.rules, all.len(), "rules")?;
+    settings.counted(source, "NumRules", settings.rules, all.len(), "rule")?;
     let (and, or) = (reader.and, reader.or);
     let and = settings
         .and
@@ -175,7 +178,8 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
             rules: all,
         }],
     };
-    checks::finish(source, system, end)
+    checks::rules(source, &system.blocks, end)?;
+    Ok(system)
 }
 
 /// A line's text and where it begins.
@@ -418,12 +422,11 @@ impl<'s> Settings<'s> {
     ) -> Result<(), ReadError> {
         match said {
             Some((number, place)) if number != found => {
-                let message = format!("{key} is {number}, but there are {found} {what}");
-                Err(source.error(
-                    place,
-                    message,
-                    format!("`{key}={found}`, or as many {what}"),
-                ))
+                let message = format!(
+                    "{key} is {number}, but the file has {}",
+                    counted(found, what)
+                );
+                Err(source.error(place, message, "as many as there are"))
             }
             _ => Ok(()),
         }
@@ -601,7 +604,8 @@ impl<'s> Variable<'s, '_> {
                         let place = cursor.peek().place;
                         let numbers = list(source, cursor)?;
                         let [start, end] = numbers[..] else {
-                            let found = format!("the range has {} numbers", numbers.len());
+                            let found =
+                                format!("the range has {}", counted(numbers.len(), "number"));
                             return Err(source.error(place, found, "`[start end]`"));
                         };
                         range = Some(checks::range(source, start, end)?);
@@ -616,12 +620,9 @@ impl<'s> Variable<'s, '_> {
         if let Some((number, at)) = said
             && number != terms.len()
         {
-            let found = format!("NumMFs is {number}, but there are {} terms", terms.len());
-            return Err(source.error(
-                at,
-                found,
-                format!("`NumMFs={}`, or as many terms", terms.len()),
-            ));
+            let terms = counted(terms.len(), "term");
+            let found = format!("NumMFs is {number}, but the section has {terms}");
+            return Err(source.error(at, found, "as many as there are"));
         }
         let Some(name) = variable else {
             return Err(source.error(place, format!("{section} has no name"), "`Name='…'`"));
@@ -685,7 +686,7 @@ impl<'s> Variable<'s, '_> {
                 constant: constant.value,
             }),
             (kind, _) => {
-                let found = format!("{} has {} numbers", quoted(kind), numbers.len());
+                let found = format!("{} has {}", quoted(kind), counted(numbers.len(), "number"));
                 let allowed = match kind {
                     "constant" => "1: the value",
                     _ => "a number for each input, and the constant",
@@ -725,7 +726,10 @@ impl<'s> Rules<'s, '_> {
                 }
             }
             if !cursor.eat_sign(",") {
-                let allowed = format!("`,` behind {} numbers, one an input", self.inputs.len());
+                let allowed = format!(
+                    "`,` behind {}, one for each input",
+                    counted(self.inputs.len(), "number")
+                );
                 return Err(cursor.unexpected(allowed));
             }
             let mut conclusions = Vec::new();
@@ -743,8 +747,8 @@ impl<'s> Rules<'s, '_> {
             }
             if !cursor.eat_sign("(") {
                 let allowed = format!(
-                    "`(weight)` behind {} numbers, one an output",
-                    self.outputs.len()
+                    "`(weight)` behind {}, one for each output",
+                    counted(self.outputs.len(), "number")
                 );
                 return Err(cursor.unexpected(allowed));
             }
@@ -815,11 +819,7 @@ fn index(
     match size >= 0.0 && size <= terms as f64 {
         false => {
             let found = format!("{} has no term {}", quoted(variable), number.value);
-            Err(source.error(
-                number.place,
-                found,
-                format!("0 to {terms}, or with a minus for NOT"),
-            ))
+            Err(source.error(number.place, found, format!("0 to {terms}")))
         }
         true if size == 0.0 => Ok(None),
         true => Ok(Some((size as usize - 1, number.value < 0.0, number.place))),

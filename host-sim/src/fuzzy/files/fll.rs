@@ -10,7 +10,7 @@ mod write;
 use super::checks;
 use super::conditions::{Grammar, Names, WrittenRule, rule};
 use super::cursor::{Cursor, Parameter};
-use super::error::{ReadError, Source, lines, one_of, quoted};
+use super::error::{ReadError, Source, counted, lines, one_of, quoted};
 use super::lexer::{Dialect, Kind, Token, lex};
 use super::limits;
 use super::norms::{ALLOWED_AND, ALLOWED_OR, Norm, Used, concludes_set};
@@ -158,11 +158,13 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
     if components.is_empty() {
         return Err(source.error(source.end(), "the file ends here", "`Engine: name`"));
     }
+    checks::variables(source, &system.inputs, &system.outputs, source.end())?;
     for block in blocks {
         let rules = block.resolve(source, &system)?;
         system.blocks.push(rules);
     }
-    checks::finish(source, system, source.end())
+    checks::rules(source, &system.blocks, source.end())?;
+    Ok(system)
 }
 
 fn unique_variable(
@@ -265,6 +267,11 @@ impl<'s> Component<'s, '_> {
         for (i, property) in self.component.properties.iter().enumerate() {
             let key = property.key;
             if !known.contains(&key) {
+                // Components are written with a capital.
+                if key.starts_with(char::is_uppercase) {
+                    let found = format!("{} is no component", quoted(key));
+                    return Err(self.source.error(property.place, found, one_of(KINDS)));
+                }
                 let found = format!("{} is no property of {}", quoted(key), self.component.kind);
                 return Err(self.source.error(property.place, found, one_of(known)));
             }
@@ -278,9 +285,7 @@ impl<'s> Component<'s, '_> {
                     quoted(key),
                     first.place.line
                 );
-                return Err(self
-                    .source
-                    .error(property.place, found, "each property once"));
+                return Err(self.source.error(property.place, found, "each once"));
             }
         }
         Ok(())
@@ -623,7 +628,11 @@ impl<'s> Component<'s, '_> {
                 constant: constant.value,
             }),
             _ => {
-                let found = format!("{} has {} numbers", quoted(name.text), numbers.len());
+                let found = format!(
+                    "{} has {}",
+                    quoted(name.text),
+                    counted(numbers.len(), "number")
+                );
                 let allowed = match constant {
                     true => "1: the value",
                     false => "a number for each input, and the constant",
@@ -653,11 +662,14 @@ impl<'s> Component<'s, '_> {
         }
         let mut rules = Vec::new();
         for property in self.component.properties.iter().filter(|p| p.key == "rule") {
-            rules.push(self.value(
-                *property,
-                "`and`, `with` or the end of the line",
-                |cursor| rule(cursor, self.source, &GRAMMAR),
-            )?);
+            rules.push(self.value(*property, "", |cursor| {
+                let rule = rule(cursor, self.source, &GRAMMAR)?;
+                cursor.end(match rule.weight {
+                    Some(_) => "the end of the line",
+                    None => "`and`, `with` or the end of the line",
+                })?;
+                Ok(rule)
+            })?);
             checks::count(
                 self.source,
                 property.place,

@@ -43,7 +43,7 @@ impl<T: Copy> Norm<'_, T> {
                 Err(source.error(token.place, found, allowed))
             }
             (Norm::None, Some(by)) => {
-                let found = format!("this needs a {what}, but the rule block has none");
+                let found = format!("the rule block has no {what}, which this needs");
                 Err(source.error(by, found, allowed))
             }
         }

@@ -2,7 +2,7 @@
 //! three ways is the same [`Shape`].
 
 use super::cursor::Parameter;
-use super::error::{ReadError, Source, quoted};
+use super::error::{ReadError, Source, counted, quoted};
 use super::lexer::Token;
 use super::limits;
 use crate::fuzzy::model::{Place, Shape};
@@ -76,7 +76,11 @@ impl Family {
             for (i, &at) in order.iter().enumerate() {
                 names[at] = wanted[i];
             }
-            let found = format!("{} has {} numbers", quoted(name.text), given.len());
+            let found = format!(
+                "{} has {}",
+                quoted(name.text),
+                counted(given.len(), "number")
+            );
             let allowed = format!("{}: {}", wanted.len(), names.join(", "));
             return Err(source.error(name.place, found, allowed));
         }
@@ -289,9 +293,8 @@ fn points(source: Source<'_>, name: Token<'_>, given: &[Parameter]) -> Result<Sh
     let pairs = given.len() / 2;
     if given.len() % 2 == 1 || !(2..=limits::POINTS).contains(&pairs) {
         let found = match given.len() % 2 {
-            1 => format!("{} numbers make no points", given.len()),
-            _ if pairs == 1 => "there is 1 point".to_owned(),
-            _ => format!("there are {pairs} points"),
+            1 => format!("{} make no points", counted(given.len(), "number")),
+            _ => format!("found {}", counted(pairs, "point")),
         };
         let allowed = format!("2 to {} points: x, degree, x, degree…", limits::POINTS);
         return Err(source.error(name.place, found, allowed));

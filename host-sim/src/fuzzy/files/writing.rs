@@ -1,7 +1,7 @@
 //! What both writers share: numbers, names, rules, and how they refuse what their language cannot say.
 
 use super::limits;
-use crate::fuzzy::model::{Antecedent, Place, Rule, System};
+use crate::fuzzy::model::{Antecedent, Conclusion, Place, Rule, Shape, System};
 use std::fmt::{self, Display, Formatter};
 
 /// Why a system was not written: its language cannot say something.
@@ -80,12 +80,8 @@ pub fn is_name(name: &str, reserved: &[&[&str]]) -> bool {
             .any(|r| r.eq_ignore_ascii_case(name))
 }
 
-/// Refuses names that the language cannot hold.
-pub fn check_names(
-    system: &System,
-    language: &str,
-    reserved: &[&[&str]],
-) -> Result<(), WriteError> {
+/// Refuses what no reader would take back: names that the language cannot hold, sets without a width.
+pub fn check(system: &System, language: &str, reserved: &[&[&str]]) -> Result<(), WriteError> {
     let check = |what: &str, name: &str, place: Place| match is_name(name, reserved) {
         true => Ok(()),
         false => refuse_adaptable(
@@ -103,6 +99,10 @@ pub fn check_names(
     for output in &system.outputs {
         check("output", &output.name, output.place)?;
         for term in &output.terms {
+            if matches!(term.conclusion, Conclusion::Set(Shape::Singleton(_))) {
+                let found = format!("the term `{}` of `{}` has no width", term.name, output.name);
+                return refuse(term.place, found, "a set that has one, or a constant");
+            }
             check("term", &term.name, term.place)?;
         }
     }

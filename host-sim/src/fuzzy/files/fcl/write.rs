@@ -3,7 +3,7 @@
 
 use super::{DEFAULT_SAMPLES, RESERVED_NAMES, SAMPLES_NOTE};
 use crate::fuzzy::files::writing::{
-    RuleStyle, WriteError, check_names, is_name, number, numbers, refuse, refuse_adaptable, rule,
+    RuleStyle, WriteError, check, is_name, number, numbers, refuse, refuse_adaptable, rule,
 };
 use crate::fuzzy::model::{
     Conclusion, Conjunction, Defuzzifier, Merge, Output, Place, RuleBlock, Sampling, Shape, System,
@@ -17,7 +17,7 @@ const STYLE: RuleStyle = RuleStyle {
 
 /// Writes a system, which keeps the model's promises.
 pub fn write(system: &System) -> Result<String, WriteError> {
-    check_names(system, "FCL", RESERVED_NAMES)?;
+    check(system, "FCL", RESERVED_NAMES)?;
     word(&system.name, "function block")?;
     let mut text = Lines::default();
     text.head("FUNCTION_BLOCK", &system.name);

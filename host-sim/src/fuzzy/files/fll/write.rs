@@ -2,7 +2,7 @@
 
 use super::{RESERVED_NAMES, written};
 use crate::fuzzy::files::writing::{
-    RuleStyle, WriteError, check_names, number, numbers, refuse_adaptable, rule,
+    RuleStyle, WriteError, check, number, numbers, refuse_adaptable, rule,
 };
 use crate::fuzzy::model::{
     Conclusion, Conjunction, Defuzzifier, Merge, Output, Place, Sampling, Shape, System,
@@ -17,7 +17,7 @@ const STYLE: RuleStyle = RuleStyle {
 
 /// Writes a system, which keeps the model's promises.
 pub fn write(system: &System) -> Result<String, WriteError> {
-    check_names(system, "FLL", RESERVED_NAMES)?;
+    check(system, "FLL", RESERVED_NAMES)?;
     let mut text = String::new();
     line(&mut text, "", "Engine", &free(&system.name, "engine")?);
     for input in &system.inputs {
