@@ -649,7 +649,7 @@ impl<'s> Reader<'s, '_> {
             let found = format!("the default is {}", default.value);
             return Err(self.source.error(default.place, found, "a finite number"));
         }
-        if self.cursor.at_sign("|") || self.cursor.peek().text == "|" {
+        if self.cursor.peek().text == "|" {
             let found = "keeping the previous value is not supported";
             return Err(self.source.error(self.cursor.peek().place, found, "`;`"));
         }

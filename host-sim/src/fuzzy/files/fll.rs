@@ -152,7 +152,11 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
                 unique_variable(source, &mut names, &output.name, output.place)?;
                 system.outputs.push(output);
             }
-            _ => blocks.extend(reader.block()?),
+            _ => {
+                blocks.extend(reader.block()?);
+                let place = component.head.place;
+                checks::count(source, place, "rule blocks", blocks.len(), limits::BLOCKS)?;
+            }
         }
     }
     if components.is_empty() {
