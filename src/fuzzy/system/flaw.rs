@@ -190,8 +190,7 @@ impl Flaw {
             Self::Pieces { input, term, piece } => text
                 .named("input", input)
                 .named(", term", term)
-                .and(": its points must ascend and its pieces meet, which ends at")
-                .named("", piece),
+                .named(": its pieces must ascend and meet, unlike piece", piece),
             Self::Gap { input, at } => text
                 .named("input", input)
                 .and(" has a gap: no term holds at ")
@@ -271,7 +270,7 @@ impl Flaw {
             Self::Accumulator { output } => text.named("output", output).and(
                 ": its weighted sums could overflow; take fewer rules or a coarser number format",
             ),
-            Self::Sizes => text.and("a controller's sizes are its system's: inputs, terms of the inputs, rules, outputs"),
+            Self::Sizes => text.and("a controller's sizes are its system's: inputs, terms, rules, outputs"),
         }
     }
 }
@@ -394,7 +393,7 @@ mod tests {
                     term: most,
                     piece: 3,
                 },
-                "at 3",
+                "unlike piece 3",
             ),
             (Flaw::Accumulator { output: most }, "number format"),
         ] {
