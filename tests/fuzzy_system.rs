@@ -21,7 +21,7 @@ impl Dice {
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
-        (u128::from(self.0.rotate_left(29)) * u128::from(n) >> 64) as u64
+        ((u128::from(self.0.rotate_left(29)) * u128::from(n)) >> 64) as u64
     }
 
     fn size(&mut self, most: u64) -> usize {
@@ -271,7 +271,7 @@ impl Made {
             Terms::Sets(samples, middles, sets) => {
                 let [low, high] = samples.range().map(f64::from);
                 let n = samples.count() as f64;
-                for j in 0..samples.count() {
+                parts.extend((0..samples.count()).map(|j| {
                     let implied = |&(term, degree, implication): &(usize, f64, Norm)| {
                         joined(
                             implication,
@@ -285,8 +285,8 @@ impl Made {
                     } else {
                         j as f64 / (n - 1.0)
                     };
-                    parts.push((w, low + at * (high - low)));
-                }
+                    (w, low + at * (high - low))
+                }));
             }
         }
         let weight: f64 = parts.iter().map(|p| p.0).sum();
