@@ -1125,6 +1125,23 @@ proptest! {
 }
 
 #[test]
+fn a_gap_without_a_foot_in_it_is_found() {
+    // Flanks so flat that they are below half a step for 32 steps beside their feet, which overlap: the gap is between.
+    let falling = trapezoid(-LIMIT, -LIMIT, -LIMIT, 20);
+    let rising = trapezoid(-20, LIMIT, LIMIT, LIMIT);
+    let terms: [&[Piece]; 2] = [&falling, &rising];
+    let rules = [Rule::new(&[&[Is(0, 0)], &[Is(0, 1)]], &[(0, 0)])];
+    let blocks = [Block::min(&rules)];
+    let outputs = [height(&[SEVEN])];
+    let open = [Input::new([-60, 60], &terms).with_gaps()];
+    let system = System::checked(&open, &blocks, &outputs).unwrap();
+    let fires = |x: i32| evaluate(&system, &[x]).1[0] > Degree::ZERO;
+    assert_eq!([-20, 0, 20].map(fires), [true, false, true]);
+    let flaw = System::checked(&[Input::new([-60, 60], &terms)], &blocks, &outputs).unwrap_err();
+    assert_eq!(flaw, Flaw::Gap { input: 0, at: 0 });
+}
+
+#[test]
 fn a_singleton_input_holds_at_its_step_alone() {
     let terms: [&[Piece]; 1] = [&singleton(q("5"))];
     let inputs = [lone(&terms).with_gaps()];

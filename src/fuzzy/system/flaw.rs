@@ -387,11 +387,11 @@ mod tests {
         let pieces = Flaw::Pieces {
             input: 3,
             term,
-            piece: usize::MAX,
+            piece: 1_000_000,
         };
         for (flaw, end) in [
             (hole, "254, 254, 254, 254 of the inputs"),
-            (pieces, "unlike piece 18446744073709551615"),
+            (pieces, "unlike piece 1000000"),
             (Flaw::Coefficients { output, term }, "a shift of 0 to 60"),
             (Flaw::OutOfRange { output, term }, "is not limited"),
             (Flaw::Accumulator { output }, "number format"),
