@@ -5,12 +5,22 @@
 
 use super::Grade;
 use super::even::{FULL, Place};
+use super::reciprocal::reciprocal;
 
 /// Two rules one above the other: their peaks in both outputs, the upper row's in the lower half.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) struct Edge {
     pub first: u32,
     pub second: u32,
+}
+
+impl Edge {
+    /// Two peaks of zero.
+    pub const NONE: Self = Self {
+        first: 0,
+        second: 0,
+    };
 }
 
 /// What the four rules weigh.
@@ -20,8 +30,8 @@ pub(super) struct Weighed {
     pub sums: [i32; 2],
     /// Their degrees, 0 to [`FULL`]: row by row, left before right.
     pub degrees: [i32; 4],
-    /// With f and g the two upper grades, min(f, 1 − f, g, 1 − g), not negated: Σw is one and twice this.
-    pub excess: u32,
+    /// [1/Σw](reciprocal).
+    pub reciprocal: u32,
 }
 
 impl Weighed {
@@ -32,12 +42,15 @@ impl Weighed {
     }
 }
 
-/// Weighs the rules on the edges left and right of an input.
+/// Weighs the rules around an input; `edges` are those between its two rows.
 ///
 /// Two minima are enough: 1 − max(f, g) = 1 − f − g + min(f, g), and likewise with 1 − f for f.
 #[inline(always)]
-pub(super) fn weigh(row: &Place, col: &Place, left: Edge, right: Edge) -> Weighed {
-    let (f, g) = (row.upper, col.upper);
+pub(super) fn weigh<const C: usize>(row: &Place, col: &Place, edges: &[Edge; C]) -> Weighed {
+    // In range as it is: `min` lets the optimiser drop bounds checks.
+    let gap = col.lower.min(C - 2);
+    let [left, right] = [edges[gap], edges[gap + 1]];
+    let (f, g) = (row.upper(), col.upper());
     let below_right = weaker(f, g);
     let above_right = weaker(FULL.wrapping_sub(f), g);
     let above_left = FULL
@@ -45,6 +58,8 @@ pub(super) fn weigh(row: &Place, col: &Place, left: Edge, right: Edge) -> Weighe
         .wrapping_sub(g)
         .wrapping_add(below_right);
     let below_left = f.wrapping_sub(g).wrapping_add(above_right);
+    // min(f, 1 − f, g, 1 − g): Σw is one and twice this.
+    let excess = g.wrapping_sub(below_right).wrapping_sub(above_right);
     let degrees = [above_left, above_right, below_left, below_right];
     Weighed {
         sums: [
@@ -52,7 +67,7 @@ pub(super) fn weigh(row: &Place, col: &Place, left: Edge, right: Edge) -> Weighe
             sum(degrees, left.second, right.second),
         ],
         degrees,
-        excess: g.wrapping_sub(below_right).wrapping_sub(above_right) as u32,
+        reciprocal: reciprocal(excess as u32),
     }
 }
 
