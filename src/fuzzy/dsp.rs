@@ -9,7 +9,7 @@ use core::arch::asm;
 /// As [`weigh`](super::weigh::weigh).
 #[inline(always)]
 pub(super) fn weigh<const C: usize>(row: &Place, col: &Place, edges: &[Edge; C]) -> Weighed {
-    // Two degrees a register, lower half and upper half: above left and below left…
+    // Two degrees a register, negated, lower half and upper half: above left and below left…
     let on_left: u32;
     // …below right and above right.
     let on_right: u32;
@@ -21,15 +21,15 @@ pub(super) fn weigh<const C: usize>(row: &Place, col: &Place, edges: &[Edge; C])
     unsafe {
         asm!(
             "add {edges}, {edges}, {left}, lsl #3",
-            // Of the shares the upper 16 bits, and half of that negated: the grades f and 1 − f, and g twice. What is
-            // short of the whole has the complement's bits.
+            // Of the shares the upper 16 bits, and half of that, rounded: the grades f and 1 − f, and g twice, negated.
+            // What is short of the whole has the complement's bits.
             "mvn {right}, {rows}",
             "pkhtb {right}, {right}, {rows}, asr #16",
             "pkhtb {cols}, {cols}, {cols}, asr #16",
             "mov {left}, #0",
             "uhsub16 {right}, {left}, {right}",
             "uhsub16 {cols}, {left}, {cols}",
-            // Differences f − g, 1 − f − g; by their signs the weaker of f and g, 1 − f and g: negated, the larger.
+            // Differences f − g, 1 − f − g; by their signs the lesser of f and g, 1 − f and g.
             "ssub16 {left}, {right}, {cols}",
             "sel {right}, {right}, {cols}",
             // 1 − f − g + min(f, g), f − g + min(1 − f, g).
@@ -65,7 +65,11 @@ pub(super) fn weigh<const C: usize>(row: &Place, col: &Place, edges: &[Edge; C])
     }
 }
 
+/// Both degrees.
 #[inline(always)]
 fn halves(pair: u32) -> (i32, i32) {
-    (i32::from(pair as i16), pair as i32 >> 16)
+    (
+        i32::from(pair as i16).wrapping_neg(),
+        (pair as i32 >> 16).wrapping_neg(),
+    )
 }

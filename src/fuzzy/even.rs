@@ -1,8 +1,8 @@
 //! Even partitions: where all peaks of an axis are equally far apart, one multiplication finds the gap and the share in
 //! it, and where the gaps are a power of two, a shift.
 
-/// Full membership, negated as all grades are here: as factors of 16 bits −2¹⁵ is one, and 2¹⁵ is none.
-pub(super) const FULL: i32 = -(1 << 15);
+/// Full membership, as in a [`Grade`](super::Grade).
+pub(super) const FULL: i32 = 1 << 15;
 
 /// Where an input lies on an axis with evenly spaced terms: 0 is the first peak, 2³² would be the last.
 ///
@@ -21,11 +21,10 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Grade of the upper term, negated: 0 to [`FULL`]; the lower one has the complement. Exact to half a step of 2⁻¹⁵.
+    /// Grade of the upper term, 0 to [`FULL`]; the lower one has the complement. Exact to half a step of 2⁻¹⁵.
     #[inline(always)]
     pub fn upper(&self) -> i32 {
-        // Negated, half a step up becomes half a step down, as a shift does it.
-        ((self.share >> 16) as i32).wrapping_neg() >> 1
+        ((self.share >> 16).wrapping_add(1) >> 1) as i32
     }
 }
 

@@ -27,7 +27,7 @@ fn by_division(excess: u32) -> u32 {
 #[inline(always)]
 fn by_newton(excess: u32) -> u32 {
     // Half of both, so that an error has its sign; Σw is even.
-    const ONE: u32 = 1 << 31;
+    const ONE: u32 = i32::MAX as u32;
     let half = (1u32 << 14).wrapping_add(excess);
     let error = |r: u32| ONE.wrapping_sub(half.wrapping_mul(r)) as i32;
     // Parallel to the chord of the hyperbola: within 8 %.
@@ -39,7 +39,7 @@ fn by_newton(excess: u32) -> u32 {
     // Now the error is small, and three bits of it more fit the product.
     let nearest = near.wrapping_add_signed((error(near) >> 10).wrapping_mul(near as i32) >> 21);
     let above = nearest.wrapping_add(1);
-    above.wrapping_add_signed(error(above).wrapping_sub(1) >> 31)
+    above.wrapping_add_signed(error(above) >> 31)
 }
 
 #[cfg(test)]

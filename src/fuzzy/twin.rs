@@ -10,7 +10,7 @@
 
 use super::even::{Place, Position, are_even};
 use super::product::mean;
-use super::weigh::{Edge, Weighed, weigh};
+use super::weigh::{Edge, Weighed, factor, weigh};
 use super::{Activation, Antecedents, RuleTable};
 
 /// Two complete rule tables of `R × C` rules over even partitions. `GAPS` is `R − 1`.
@@ -126,10 +126,5 @@ const fn pair<const R: usize, const C: usize>(
     row: usize,
     col: usize,
 ) -> u32 {
-    negated(cells[row][col]) | negated(cells[row + 1][col]) << 16
-}
-
-/// No peak is the least 16-bit number: see [`Consequents`](super::Consequents).
-const fn negated(peak: i16) -> u32 {
-    peak.wrapping_neg() as u16 as u32
+    factor(cells[row][col]) as u16 as u32 | (factor(cells[row + 1][col]) as u16 as u32) << 16
 }
