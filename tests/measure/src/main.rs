@@ -1,4 +1,4 @@
-//! `cargo bit-exact` and `cargo budgets`.
+//! `cargo bit-exact`, `cargo budgets` and `cargo engine`.
 
 use anyhow::{Context, bail, ensure};
 use clap::{Args, Parser, Subcommand};
@@ -6,7 +6,7 @@ use comfy_table::{Table, presets::NOTHING};
 use measure::budgets::{Budgets, Measured, readme};
 use measure::counts::{COUNTED, count};
 use measure::machine::{Images, MACHINES, Missing};
-use measure::{clock, digests, exact, footprint, suite};
+use measure::{clock, digests, engine, exact, footprint, suite};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -24,6 +24,8 @@ enum Command {
     BitExact(BitExact),
     /// Count instructions, stack, flash and memory, and compare them with tests/budgets.toml and the README's table.
     Budgets(Write),
+    /// Count one evaluation of the fine controller over a grid, and compare results and costs with what is allowed.
+    Engine,
 }
 
 #[derive(Args)]
@@ -46,6 +48,7 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::BitExact(arguments) => bit_exact(&arguments),
         Command::Budgets(arguments) => budgets(arguments.write),
+        Command::Engine => engine::run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,7 +1,7 @@
 //! The fine controller counted over a dense grid: three ways to evaluate it, the same inputs.
 //!
-//! Words in `out`: the count of nothing and of 1,000 instructions; for each way the least and the greatest count and a
-//! checksum of all outputs; the deepest stack of the last way.
+//! Words in `out`: the count of nothing and of 1,000 instructions; for a call of one instruction and for each way the
+//! least and the greatest count and a checksum of all outputs.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 // The player's: it needs more of them.
@@ -13,19 +13,14 @@ mod clock;
 #[path = "../image/files.rs"]
 #[allow(dead_code)]
 mod files;
-#[cfg(target_os = "none")]
-#[path = "../image/stack.rs"]
-#[allow(dead_code)]
-mod stack;
 
 #[cfg(target_os = "none")]
 mod image {
     use crate::clock::{self, now, since};
     use crate::files::Output;
-    use crate::stack;
-    use fuzzypilot::behaviour::fine::FineController;
+    use fuzzypilot::behaviour::fine::{FineController, FineMotion};
     use fuzzypilot::units::{Angle, Metres};
-    use replica::fine::{Bits, CONTROLLER, grid, mix};
+    use replica::fine::{CONTROLLER, grid, mix};
     use replica::owned::Owned;
 
     static OUTPUT: Owned<Output> = Owned::new(Output::new());
@@ -40,54 +35,61 @@ mod image {
         clock::start();
         output.word(clock::empty());
         output.word(clock::thousand());
+        count(output, nothing);
         count(output, plain);
         count(output, compiled_in);
         count(output, by_reference);
-        let depth = stack::depth_of(|| {
-            core::hint::black_box(by_reference(
-                &CONTROLLER,
-                Metres::lit("0.1"),
-                Angle::QUARTER,
-            ));
-        });
-        output.word(depth);
         semihosting::process::exit(if output.finish().is_some() { 0 } else { 1 })
     }
 
-    type Way = fn(&FineController, Metres, Angle) -> Bits;
+    /// Raw numbers in; out in the lower half the speed, in the upper one the yaw rate: all in registers.
+    type Way = extern "C" fn(&'static FineController, i32, i32) -> u64;
 
     #[inline(never)]
     fn count(output: &mut Output, way: Way) {
         let (mut least, mut most, mut sum) = (u32::MAX, 0, 0);
         for (d, heading_error) in grid() {
+            let (d, heading_error) = (d.bits(), heading_error.bits());
             let begin = now();
             let bits = way(&CONTROLLER, d, heading_error);
             let count = since(begin);
             least = least.min(count);
             most = most.max(count);
-            sum = mix(sum, bits);
+            sum = mix(sum, (bits as i32, (bits >> 32) as i32));
         }
         output.word(least);
         output.word(most);
         output.word(sum);
     }
 
-    #[inline(never)]
-    fn plain(controller: &FineController, d: Metres, heading_error: Angle) -> Bits {
-        let motion = controller.evaluate_plain(d, heading_error);
-        (motion.speed.bits(), motion.yaw_rate.bits())
+    /// One instruction: what calling costs.
+    #[unsafe(naked)]
+    extern "C" fn nothing(_: &'static FineController, _: i32, _: i32) -> u64 {
+        core::arch::naked_asm!(
+            #[cfg(target_arch = "arm")]
+            "bx lr",
+            #[cfg(target_arch = "riscv32")]
+            "ret",
+        )
+    }
+
+    fn packed(motion: &FineMotion) -> u64 {
+        u64::from(motion.speed.bits() as u32) | u64::from(motion.yaw_rate.bits() as u32) << 32
     }
 
     #[inline(never)]
-    fn compiled_in(_: &FineController, d: Metres, heading_error: Angle) -> Bits {
-        let motion = CONTROLLER.evaluate(d, heading_error);
-        (motion.speed.bits(), motion.yaw_rate.bits())
+    extern "C" fn plain(controller: &'static FineController, d: i32, error: i32) -> u64 {
+        packed(&controller.evaluate_plain(Metres::from_bits(d), Angle::from_bits(error)))
     }
 
     #[inline(never)]
-    fn by_reference(controller: &FineController, d: Metres, heading_error: Angle) -> Bits {
-        let motion = controller.evaluate(d, heading_error);
-        (motion.speed.bits(), motion.yaw_rate.bits())
+    extern "C" fn compiled_in(_: &'static FineController, d: i32, error: i32) -> u64 {
+        packed(&CONTROLLER.evaluate(Metres::from_bits(d), Angle::from_bits(error)))
+    }
+
+    #[inline(never)]
+    extern "C" fn by_reference(controller: &'static FineController, d: i32, error: i32) -> u64 {
+        packed(&controller.evaluate(Metres::from_bits(d), Angle::from_bits(error)))
     }
 
     #[unsafe(no_mangle)]
