@@ -1,4 +1,4 @@
-//! `cargo bit-exact`, `cargo budgets` and `cargo engine`.
+//! `cargo bit-exact`, `cargo budgets`, `cargo engine` and `cargo systems`.
 
 use anyhow::{Context, bail, ensure};
 use clap::{Args, Parser, Subcommand};
@@ -6,11 +6,7 @@ use comfy_table::{Table, presets::NOTHING};
 use measure::budgets::{Budgets, Measured, readme};
 use measure::counts::{COUNTED, count};
 use measure::machine::{Images, MACHINES, Missing};
-<<<<<<< HEAD
-use measure::{clock, digests, exact, footprint, suite, systems};
-=======
-use measure::{clock, digests, engine, exact, footprint, suite};
->>>>>>> fuzzy-kernel
+use measure::{clock, digests, engine, exact, footprint, suite, systems};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -28,13 +24,10 @@ enum Command {
     BitExact(BitExact),
     /// Count instructions, stack, flash and memory, and compare them with tests/budgets.toml and the README's table.
     Budgets(Write),
-<<<<<<< HEAD
     /// Evaluate general fuzzy systems: the same bits everywhere, the same count of instructions for every input.
     Systems,
-=======
     /// Count one evaluation of the fine controller over a grid, and compare results and costs with what is allowed.
     Engine,
->>>>>>> fuzzy-kernel
 }
 
 #[derive(Args)]
@@ -57,11 +50,8 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::BitExact(arguments) => bit_exact(&arguments),
         Command::Budgets(arguments) => budgets(arguments.write),
-<<<<<<< HEAD
         Command::Systems => systems(),
-=======
         Command::Engine => engine::run(),
->>>>>>> fuzzy-kernel
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
