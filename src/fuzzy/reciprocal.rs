@@ -29,17 +29,18 @@ fn by_newton(excess: u32) -> u32 {
     // Half of both, so that an error has its sign; Σw is even.
     const ONE: u32 = i32::MAX as u32;
     let half = (1u32 << 14).wrapping_add(excess);
-    let error = |r: u32| ONE.wrapping_sub(half.wrapping_mul(r)) as i32;
+    let error = |one: u32, r: u32| one.wrapping_sub(half.wrapping_mul(r)) as i32;
     // Parallel to the chord of the hyperbola: within 8 %.
     let guess = 126_000_u32.wrapping_sub(excess << 2);
-    // A step takes the error's square, 0.6 %, always to the low side: what is added puts it in the middle.
-    let near = guess
-        .wrapping_add_signed((error(guess) >> 13).wrapping_mul(guess as i32) >> 18)
-        .wrapping_add(190);
+    // A step takes the error's square, 0.6 %, always to the low side: towards a little more than one it ends around it.
+    let more = ONE.wrapping_add(85 << 16);
+    let near =
+        guess.wrapping_add_signed((error(more, guess) >> 13).wrapping_mul(guess as i32) >> 18);
     // Now the error is small, and three bits of it more fit the product.
-    let nearest = near.wrapping_add_signed((error(near) >> 10).wrapping_mul(near as i32) >> 21);
+    let nearest =
+        near.wrapping_add_signed((error(ONE, near) >> 10).wrapping_mul(near as i32) >> 21);
     let above = nearest.wrapping_add(1);
-    above.wrapping_add_signed(error(above) >> 31)
+    above.wrapping_add_signed(error(ONE, above) >> 31)
 }
 
 #[cfg(test)]

@@ -20,12 +20,12 @@ struct Bar {
 const BARS: [Bar; 3] = [
     Bar {
         core: "m4f",
-        instructions: [80, 60, 45],
+        instructions: [80, 55, 45],
         flash: 512,
     },
     Bar {
         core: "m0",
-        instructions: [180, 170, 180],
+        instructions: [170, 160, 170],
         flash: 540,
     },
     Bar {
