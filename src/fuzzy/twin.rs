@@ -44,7 +44,7 @@ impl<const R: usize, const C: usize> Twin<R, C> {
         }
     }
 
-    /// [`EXTRA_BITS`], for who scales an output.
+    /// Fractional bits that an output has more than its table's format.
     pub const EXTRA_BITS: u32 = EXTRA_BITS;
 
     /// Both outputs in their tables' own formats, rounded to nearest.
