@@ -11,6 +11,7 @@
 pub mod c;
 mod literal;
 mod names;
+mod pieces;
 mod ruspini;
 pub mod rust;
 mod words;

@@ -102,6 +102,18 @@ pub enum Defuzzifier {
     },
 }
 
+impl Defuzzifier {
+    /// The names of its terms.
+    pub fn names(&self) -> Vec<&str> {
+        match self {
+            Self::WeightedAverage { terms, .. } => {
+                terms.iter().map(|(name, _)| &name[..]).collect()
+            }
+            Self::Centroid { terms, .. } => terms.iter().map(|(name, _)| &name[..]).collect(),
+        }
+    }
+}
+
 /// A number that rules conclude.
 #[derive(Clone, Debug)]
 pub enum Number {
@@ -495,16 +507,4 @@ fn number(
         shift: shift as u32,
         constant: format.nearest(constant),
     })
-}
-
-impl Defuzzifier {
-    /// The names of its terms.
-    pub fn names(&self) -> Vec<&str> {
-        match self {
-            Self::WeightedAverage { terms, .. } => {
-                terms.iter().map(|(name, _)| &name[..]).collect()
-            }
-            Self::Centroid { terms, .. } => terms.iter().map(|(name, _)| &name[..]).collect(),
-        }
-    }
 }

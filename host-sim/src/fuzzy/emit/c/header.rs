@@ -84,20 +84,20 @@ pub fn text(design: &Design<'_>, names: &Names) -> String {
             input.range,
         );
     }
-    for (output, variable) in tables.outputs.iter().zip(&names.all.outputs) {
+    let models = &design.system.outputs;
+    for ((output, variable), model) in tables.outputs.iter().zip(&names.all.outputs).zip(models) {
+        let beyond = match model.clamp {
+            true => "no value is beyond",
+            false => "values are beyond where a rule concludes it",
+        };
+        let ends = [model.range.start(), model.range.end()];
+        let ends = ends.map(|&end| output.format.nearest(end));
         let what = format!(
-            "output \"{}\": {}; no value is beyond",
+            "output \"{}\": {}; {beyond}",
             plain(&output.name),
-            range(output.range, output.format)
+            range(ends, output.format)
         );
-        format_of(
-            &mut text,
-            names,
-            &variable.name,
-            &what,
-            output.format,
-            output.range,
-        );
+        format_of(&mut text, names, &variable.name, &what, output.format, ends);
         let _ = writeln!(
             text,
             "/* Where no rule fires: {}. */\n#define {} {}",

@@ -1,6 +1,7 @@
 //! The source: tables, and an evaluation in which every rule can be read.
 
 use super::super::Design;
+use super::super::pieces::thinned;
 use super::super::words::plain;
 use super::{Names, header, runtime};
 use crate::fuzzy::describe;
@@ -70,6 +71,7 @@ impl Writer<'_> {
             .zip(&self.names.all.inputs);
         for (input, variable) in inputs {
             for ((term, pieces), name) in input.terms.iter().zip(&variable.terms) {
+                let pieces = thinned(pieces);
                 let _ = write!(
                     text,
                     "\n/* {} is {}. */\nstatic const piece_t pieces_{name}[{}] =\n{{\n",
@@ -77,7 +79,7 @@ impl Writer<'_> {
                     plain(term),
                     pieces.len()
                 );
-                for piece in pieces {
+                for piece in &pieces {
                     let (slope, shift) = piece.slope();
                     let _ = writeln!(
                         text,
@@ -156,7 +158,8 @@ impl Writer<'_> {
             ["inputs", "outputs", "terms", "rules"].map(|name| self.names.shout(name));
         let mut text = format!(
             "\nvoid {}_evaluate(const int32_t in[{inputs}], int32_t out[{outputs}], uint32_t *degrees)\n{{\n    \
-             int32_t x[{inputs}];\n    uint32_t terms[{terms}];\n    uint32_t rules[{rules}];\n    uint32_t rule;\n",
+             int32_t x[{inputs}];\n    uint32_t terms[{terms}];\n    uint32_t own[{rules}];\n    \
+             uint32_t *const rules = (degrees != NULL) ? degrees : own;\n",
             self.names.prefix
         );
         for (input, variable) in tables.inputs.iter().zip(&self.names.all.inputs) {
@@ -175,7 +178,7 @@ impl Writer<'_> {
                     text,
                     "    terms[{}] = membership(pieces_{term}, {}U, x[{name}]);",
                     self.names.shout(term),
-                    pieces.len()
+                    thinned(pieces).len()
                 );
             }
         }
@@ -199,11 +202,7 @@ impl Writer<'_> {
         for (o, output) in tables.outputs.iter().enumerate() {
             self.output(&mut text, o, output);
         }
-        let _ = write!(
-            text,
-            "\n    if (degrees != NULL)\n    {{\n        for (rule = 0U; rule < {rules}; rule++)\n        {{\n            \
-             degrees[rule] = rules[rule];\n        }}\n    }}\n}}\n"
-        );
+        text.push_str("}\n");
         text
     }
 
@@ -235,8 +234,12 @@ impl Writer<'_> {
 
     fn output(&self, text: &mut String, o: usize, output: &Output) {
         let name = &self.names.all.outputs[o].name;
-        let [least, most, default] =
-            ["least", "most", "default"].map(|of| self.names.shout(&format!("{name}_{of}")));
+        let macros = ["least", "most", "default"];
+        let [least, most, default] = macros.map(|of| self.names.shout(&format!("{name}_{of}")));
+        let [least, most] = match output.range {
+            limits if limits == [-LIMIT, LIMIT] => ["-LIMIT".to_owned(), "LIMIT".to_owned()],
+            _ => [least, most],
+        };
         let _ = writeln!(text, "\n    /* {} */\n    {{", plain(&output.name));
         match &output.defuzzifier {
             Defuzzifier::WeightedAverage { merge, terms } => self.average(text, o, *merge, terms),

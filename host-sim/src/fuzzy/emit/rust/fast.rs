@@ -241,7 +241,7 @@ impl<'a> Writer<'a> {
             let close = if r + 1 == rows.terms.len() {
                 "]],"
             } else {
-                "],  "
+                "], "
             };
             let _ = writeln!(
                 text,

@@ -3,6 +3,7 @@
 use super::super::Design;
 use super::super::literal::literal;
 use super::super::names::{Identifiers, Taken, Variable};
+use super::super::pieces::thinned;
 use super::super::words::plain;
 use super::head::{Signal, head, signals};
 use super::shapes::{Argument, Call};
@@ -12,7 +13,7 @@ use crate::fuzzy::describe::{self, number};
 use crate::fuzzy::lower::{self, Defuzzifier, Format, Number, Tables};
 use crate::fuzzy::model::{Sampling, Shape};
 use fuzzypilot::fuzzy::Grade;
-use fuzzypilot::fuzzy::system::{Degree, Literal, Merge, Norm, Piece};
+use fuzzypilot::fuzzy::system::{Degree, LIMIT, Literal, Merge, Norm, Piece};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -49,6 +50,7 @@ pub fn module(design: &Design<'_>, why: Option<&str>) -> String {
         shapes: BTreeSet::new(),
         fractions: BTreeSet::new(),
         negates: false,
+        unlimited: false,
     };
     let sets = writer.sets();
     let controller = writer.controller();
@@ -83,6 +85,10 @@ pub fn module(design: &Design<'_>, why: Option<&str>) -> String {
     text += &terms;
     text += &sets;
     text += &controller;
+    if writer.unlimited {
+        text += "\n/// The largest magnitude of a number, in steps.\n\
+                 const LIMIT: i32 = fuzzypilot::fuzzy::system::LIMIT;\n";
+    }
     if writer.negates {
         text += "\n/// What is not.\nconst fn not(literal: Literal) -> Literal {\n    match literal {\n        \
                  Literal::Is(input, term) => Literal::IsNot(input, term),\n        \
@@ -167,6 +173,8 @@ struct Writer<'a> {
     fractions: BTreeSet<i32>,
     /// Whether a rule asks for what is not.
     negates: bool,
+    /// Whether an output is.
+    unlimited: bool,
 }
 
 impl<'a> Writer<'a> {
@@ -190,13 +198,18 @@ impl<'a> Writer<'a> {
             },
         });
         let outputs = tables.outputs.iter().zip(&self.names.outputs);
-        let outputs = outputs.map(|(output, names)| Signal {
+        let models = &self.design.system.outputs;
+        let outputs = outputs.zip(models).map(|((output, names), model)| Signal {
             kind: "output",
             name: &output.name,
             identifier: &names.name,
             fraction: output.format.fraction,
-            range: output.range,
-            beyond: "never",
+            range: [model.range.start(), model.range.end()].map(|&end| output.format.nearest(end)),
+            beyond: if model.clamp {
+                "never"
+            } else {
+                "where a rule concludes it"
+            },
         });
         inputs.chain(outputs).collect()
     }
@@ -350,7 +363,9 @@ impl<'a> Writer<'a> {
 
     /// A term by its shape's name if that gives the same pieces, else by its points.
     fn term(&mut self, shape: &Shape, pieces: &[Piece], format: Format) -> String {
-        if let Some(call) = Call::of(shape, format).filter(|call| call.pieces == pieces) {
+        if let Some(call) =
+            Call::of(shape, format).filter(|call| thinned(&call.pieces) == thinned(pieces))
+        {
             self.shapes.insert(call.name);
             let numbers: Vec<String> = call
                 .arguments
@@ -459,7 +474,13 @@ impl<'a> Writer<'a> {
         };
         self.imports.extend(["Output", "Defuzzifier", "Merge"]);
         let format = output.format;
-        let [low, high] = output.range.map(|end| self.steps(end, format));
+        let [low, high] = match output.range {
+            limits if limits == [-LIMIT, LIMIT] => {
+                self.unlimited = true;
+                ["-LIMIT".to_owned(), "LIMIT".to_owned()]
+            }
+            range => range.map(|end| self.steps(end, format)),
+        };
         let default = self.steps(output.default, format);
         let _ = write!(
             text,

@@ -71,7 +71,7 @@ pub fn head(
 
 fn lines(text: &mut String, lines: &[String]) {
     for line in lines {
-        let _ = writeln!(text, "//! {line}");
+        let _ = writeln!(text, "{}", format!("//! {line}").trim_end());
     }
 }
 
