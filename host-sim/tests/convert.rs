@@ -295,7 +295,7 @@ fn code_that_cannot_be_is_refused() {
             folder.path(),
             &[&["wide.fll"], to].concat(),
             &[
-                "wide.fll: line 17, column",
+                "wide.fll: line 16, column",
                 "the output `fan` does not fit: its largest number",
             ],
         );

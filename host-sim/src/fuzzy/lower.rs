@@ -13,7 +13,7 @@ mod tables;
 
 pub use format::Format;
 pub use pieces::{ONE_FLANK, TWO_FLANKS, TWO_SIDES, width};
-pub use tables::{Block, Defuzzifier, Input, Number, Output, Rule, Tables};
+pub use tables::{Block, Claims, Defuzzifier, Input, Number, Output, Rule, Tables};
 
 use super::evaluate::{Evaluation, Evaluator};
 use super::model::{Place, System};

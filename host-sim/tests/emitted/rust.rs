@@ -118,32 +118,13 @@ fn the_same_integers_as_the_library() {
     put(folder.join("src/main.rs"), &MAIN.replace("CALLS", &calls));
     cargo(&folder, &["build"]);
     cases::compare(&folder.join("target/debug/emitted"), &systems);
-    match Command::new("rustfmt")
-        .args([
-            "--check",
-            "--edition",
-            "2024",
-            "--config",
-            "skip_children=true",
-        ])
-        .args(&files)
-        .output()
-    {
-        Ok(output) if output.status.code() == Some(0) => {}
-        Ok(output) => {
-            // `skip_children` is not for every rustfmt: without it each file says itself.
-            let said = String::from_utf8_lossy(&output.stdout).into_owned();
-            let plain = Command::new("rustfmt")
-                .args(["--check", "--edition", "2024"])
-                .args(&files)
-                .output()
-                .unwrap();
-            assert!(
-                plain.status.success(),
-                "{said}{}",
-                String::from_utf8_lossy(&plain.stdout)
-            );
-        }
+    let check = ["--check", "--edition", "2024"];
+    match Command::new("rustfmt").args(check).args(&files).output() {
+        Ok(output) => assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stdout)
+        ),
         Err(_) => println!("skipped: rustfmt is not here"),
     }
     if long {

@@ -76,12 +76,12 @@ pub static CONTROLLER: Controller<2, 5, 6, 1> = Controller::new(System::new(
             &ramp(q16("24"), q16("18")), // cool
             &triangle(q16("18"), q16("24"), q16("32")), // warm
             &ramp(q16("24"), q16("32")), // hot
-        ]).with_gaps(),
+        ]),
         // humidity
         Input::new([q16("30"), q16("80")], &[
             &ramp(q16("80"), q16("30")), // dry
             &ramp(q16("30"), q16("80")), // damp
-        ]).with_gaps(),
+        ]),
     ],
     &[
         // rules
@@ -106,7 +106,7 @@ pub static CONTROLLER: Controller<2, 5, 6, 1> = Controller::new(System::new(
             range: [-LIMIT, LIMIT],
             clamp: true,
             default: q16("0"),
-            complete: false,
+            complete: true,
             defuzzifier: Defuzzifier::WeightedAverage {
                 merge: Merge::Sum,
                 terms: &[

@@ -10,7 +10,7 @@ use super::shapes::{Argument, Call};
 use super::{identifiers, shout};
 use crate::fuzzy::check::STRENGTHS;
 use crate::fuzzy::describe::{self, number};
-use crate::fuzzy::lower::{self, Defuzzifier, Format, Number, Tables};
+use crate::fuzzy::lower::{self, Claims, Defuzzifier, Format, Number, Tables};
 use crate::fuzzy::model::{Sampling, Shape};
 use fuzzypilot::fuzzy::Grade;
 use fuzzypilot::fuzzy::system::{Degree, LIMIT, Literal, Merge, Norm, Piece};
@@ -51,6 +51,7 @@ pub fn module(design: &Design<'_>, why: Option<&str>) -> String {
         fractions: BTreeSet::new(),
         negates: false,
         unlimited: false,
+        claims: design.lowered.tables().claims(),
     };
     let sets = writer.sets();
     let controller = writer.controller();
@@ -141,7 +142,9 @@ fn error(design: &Design<'_>) -> Vec<String> {
 
 /// `use path::{A, B};` as rustfmt breaks it.
 fn import(text: &mut String, path: &str, names: &BTreeSet<&'static str>) {
-    const WIDTH: usize = 100;
+    /// Of a line, and of one of several.
+    const WIDTH: usize = 98;
+    const WIDTH_INSIDE: usize = 99;
     let names: Vec<&str> = names.iter().copied().collect();
     let list = names.join(", ");
     let line = match names.as_slice() {
@@ -155,7 +158,7 @@ fn import(text: &mut String, path: &str, names: &BTreeSet<&'static str>) {
     let _ = writeln!(text, "use {path}::{{");
     let mut line = "   ".to_owned();
     for name in names {
-        if line.len() + name.len() + 2 > WIDTH {
+        if line.len() + name.len() + 2 > WIDTH_INSIDE {
             let _ = writeln!(text, "{line}");
             line = "   ".to_owned();
         }
@@ -175,6 +178,8 @@ struct Writer<'a> {
     negates: bool,
     /// Whether an output is.
     unlimited: bool,
+    /// What the compiler shall prove again.
+    claims: Claims,
 }
 
 impl<'a> Writer<'a> {
@@ -353,7 +358,9 @@ impl<'a> Writer<'a> {
             let drawn = self.term(&term.shape, pieces, input.format);
             let _ = writeln!(text, "            &{drawn}, // {}", plain(name));
         }
-        text.push_str("        ]).with_gaps()");
+        let complete = self.claims.inputs.get(i).copied().unwrap_or(false);
+        text.push_str("        ])");
+        text.push_str(if complete { "" } else { ".with_gaps()" });
         text.push_str(if input.clamp {
             ",\n"
         } else {
@@ -482,10 +489,11 @@ impl<'a> Writer<'a> {
             range => range.map(|end| self.steps(end, format)),
         };
         let default = self.steps(output.default, format);
+        let complete = self.claims.outputs.get(o).copied().unwrap_or(false);
         let _ = write!(
             text,
             "        // {}\n        Output {{\n            range: [{low}, {high}],\n            clamp: true,\n            \
-             default: {default},\n            complete: false,\n            defuzzifier: Defuzzifier::",
+             default: {default},\n            complete: {complete},\n            defuzzifier: Defuzzifier::",
             plain(&output.name)
         );
         match &output.defuzzifier {
