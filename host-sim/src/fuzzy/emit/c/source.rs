@@ -244,7 +244,7 @@ impl Writer<'_> {
         match &output.defuzzifier {
             Defuzzifier::WeightedAverage { merge, terms } => self.average(text, o, *merge, terms),
             Defuzzifier::Centroid { merge, samples, .. } => {
-                self.centroid(text, o, *merge, *samples)
+                self.centroid(text, o, *merge, *samples);
             }
         }
         let _ = write!(
