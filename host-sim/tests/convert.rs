@@ -207,3 +207,133 @@ fn what_is_adapted_is_named() {
         "{said}"
     );
 }
+
+#[test]
+fn code_goes_where_it_is_told() {
+    let folder = tempdir().unwrap();
+    let fan = design("fan.fll");
+    let fan = fan.to_str().unwrap();
+    let said = convert(folder.path())
+        .args([fan, "--to", "rust"])
+        .assert()
+        .success();
+    let said = said.get_output().stdout.clone();
+    convert(folder.path())
+        .args([fan, "--to", "rust", "--out", "fan.rs"])
+        .assert()
+        .success()
+        .stdout("");
+    assert_eq!(fs::read(folder.path().join("fan.rs")).unwrap(), said);
+    // Both files of C: by the source's name, or in a folder, under a name for both.
+    convert(folder.path())
+        .args([fan, "--to", "c", "--out", "vent.c"])
+        .assert()
+        .success()
+        .stdout("");
+    convert(folder.path())
+        .args([
+            fan,
+            "--to",
+            "c",
+            "--name",
+            "Lüfter 2",
+            "--out",
+            "new/folder",
+        ])
+        .assert()
+        .success();
+    for (file, part) in [
+        ("vent.c", "#include \"vent.h\"\n"),
+        ("vent.h", "void fan_evaluate("),
+        ("new/folder/lufter_2.c", "#include \"lufter_2.h\"\n"),
+        ("new/folder/lufter_2.h", "void lufter_2_evaluate("),
+    ] {
+        let text = fs::read_to_string(folder.path().join(file)).unwrap();
+        assert!(text.contains(part), "{file}: {text}");
+    }
+}
+
+#[test]
+fn code_that_cannot_be_is_refused() {
+    let folder = tempdir().unwrap();
+    let greenhouse = design("greenhouse.fll");
+    let greenhouse = greenhouse.to_str().unwrap();
+    fs::write(folder.path().join("file"), "precious").unwrap();
+    refused(
+        folder.path(),
+        &[
+            greenhouse, "--to", "rust", "--route", "fast", "--out", "x.rs",
+        ],
+        &[
+            "greenhouse.fll: --route fast does not fit: it takes 2 inputs, and there are 4; allowed is --route general",
+        ],
+    );
+    refused(
+        folder.path(),
+        &[greenhouse, "--to", "c"],
+        &["--to c writes two files; --out says where: NAME.c, or a folder for both"],
+    );
+    refused(
+        folder.path(),
+        &[greenhouse, "--to", "c", "--out", "file/below"],
+        &["file is a file; allowed is a folder"],
+    );
+    for (arguments, part) in [
+        (
+            &["--to", "fll", "--route", "fast"][..],
+            "--route is of no use here; allowed with --to rust",
+        ),
+        (
+            &["--to", "c", "--out", "x.c", "--route", "general"],
+            "--route is of no use here",
+        ),
+        (
+            &["--to", "fcl", "--name", "x"],
+            "--name is of no use here; allowed with --to rust or --to c",
+        ),
+        (
+            &["--to", "rust", "--adapt"],
+            "--adapt is of no use here; allowed with --to fll or --to fcl",
+        ),
+    ] {
+        refused(folder.path(), &[&[greenhouse], arguments].concat(), &[part]);
+    }
+    // No number format has room for both.
+    let text = fs::read_to_string(design("fan.fll")).unwrap();
+    let text = text.replace("range: 0 100", "range: 0 1e-9");
+    fs::write(folder.path().join("wide.fll"), text).unwrap();
+    for to in [&["--to", "rust"][..], &["--to", "c", "--out", "."]] {
+        refused(
+            folder.path(),
+            &[&["wide.fll"], to].concat(),
+            &[
+                "wide.fll: line 16, column",
+                "the output `fan` does not fit: its largest number",
+            ],
+        );
+    }
+}
+
+/// A source that cannot be written takes its header with it.
+#[test]
+fn no_half_of_two_files_is_left() {
+    let folder = tempdir().unwrap();
+    fs::create_dir(folder.path().join("fan.c")).unwrap();
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::create_dir(folder.path().join("out/fan.c")).unwrap();
+    convert(folder.path())
+        .args([
+            design("fan.fll").to_str().unwrap(),
+            "--to",
+            "c",
+            "--out",
+            "out",
+        ])
+        .assert()
+        .code(1);
+    let left: Vec<_> = fs::read_dir(folder.path().join("out"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert_eq!(left, ["fan.c"]);
+}

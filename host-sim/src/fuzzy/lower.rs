@@ -12,7 +12,8 @@ mod set;
 mod tables;
 
 pub use format::Format;
-pub use tables::{Block, Defuzzifier, Input, Number, Output, Rule, Tables};
+pub use pieces::{ONE_FLANK, TWO_FLANKS, TWO_SIDES, width};
+pub use tables::{Block, Claims, Defuzzifier, Input, Number, Output, Rule, Tables};
 
 use super::evaluate::{Evaluation, Evaluator};
 use super::model::{Place, System};

@@ -25,6 +25,18 @@ pub struct Tables {
     pub outputs: Vec<Output>,
 }
 
+/// Combinations of terms times rules that a compiler may look through.
+const MOST_TO_PROVE: usize = 20_000;
+
+/// What is claimed to be complete; nothing by default.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Claims {
+    /// Inputs: every value has a term.
+    pub inputs: Vec<bool>,
+    /// Outputs: every combination of terms has a rule.
+    pub outputs: Vec<bool>,
+}
+
 /// An input.
 #[derive(Clone, Debug)]
 pub struct Input {
@@ -102,6 +114,18 @@ pub enum Defuzzifier {
     },
 }
 
+impl Defuzzifier {
+    /// The names of its terms.
+    pub fn names(&self) -> Vec<&str> {
+        match self {
+            Self::WeightedAverage { terms, .. } => {
+                terms.iter().map(|(name, _)| &name[..]).collect()
+            }
+            Self::Centroid { terms, .. } => terms.iter().map(|(name, _)| &name[..]).collect(),
+        }
+    }
+}
+
 /// A number that rules conclude.
 #[derive(Clone, Debug)]
 pub enum Number {
@@ -140,11 +164,43 @@ impl Tables {
         })
     }
 
+    /// What the library can prove of them: inputs without a gap, outputs with a rule for every combination of terms.
+    pub fn claims(&self) -> Claims {
+        let none = Claims {
+            inputs: vec![false; self.inputs.len()],
+            outputs: vec![false; self.outputs.len()],
+        };
+        let holds = |claims: &Claims| self.claiming(claims, |system| system.is_ok());
+        let mut proven = none.clone();
+        for (i, claim) in proven.inputs.iter_mut().enumerate() {
+            let mut alone = none.clone();
+            alone.inputs[i] = true;
+            *claim = holds(&alone);
+        }
+        let combinations: usize = self.inputs.iter().map(|input| input.terms.len()).product();
+        let rules: usize = self.blocks.iter().map(|block| block.rules.len()).sum();
+        for (o, claim) in proven.outputs.iter_mut().enumerate() {
+            let mut alone = none.clone();
+            alone.outputs[o] = true;
+            *claim = combinations.saturating_mul(rules) <= MOST_TO_PROVE && holds(&alone);
+        }
+        proven
+    }
+
     /// Lends the library's form of them, or what the library finds wrong with them.
     pub(super) fn borrowed<R>(
         &self,
         use_it: impl FnOnce(Result<system::System<'_>, Flaw>) -> R,
     ) -> R {
+        self.claiming(&Claims::default(), use_it)
+    }
+
+    fn claiming<R>(
+        &self,
+        claims: &Claims,
+        use_it: impl FnOnce(Result<system::System<'_>, Flaw>) -> R,
+    ) -> R {
+        let claimed = |of: &[bool], i: usize| of.get(i).copied().unwrap_or(false);
         let terms: Vec<Vec<&[Piece]>> = self
             .inputs
             .iter()
@@ -154,10 +210,11 @@ impl Tables {
             .inputs
             .iter()
             .zip(&terms)
-            .map(|(input, terms)| system::Input {
+            .enumerate()
+            .map(|(i, (input, terms))| system::Input {
                 range: input.range,
                 clamp: input.clamp,
-                complete: false,
+                complete: claimed(&claims.inputs, i),
                 terms,
             })
             .collect();
@@ -199,11 +256,12 @@ impl Tables {
             .outputs
             .iter()
             .zip(&lists)
-            .map(|(output, terms)| system::Output {
+            .enumerate()
+            .map(|(o, (output, terms))| system::Output {
                 range: output.range,
                 clamp: true,
                 default: output.default,
-                complete: false,
+                complete: claimed(&claims.outputs, o),
                 defuzzifier: terms.defuzzifier(&output.defuzzifier),
             })
             .collect();
