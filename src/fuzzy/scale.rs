@@ -55,12 +55,12 @@ impl OutputScale {
         let (numerator, denominator) = (numerator as u128, denominator as u128);
         let mut shift = 16;
         while shift > 0 {
-            // factor / 2^(16 + shift) = numerator / denominator.
-            let factor =
-                match ((numerator << (17 + shift)) + denominator).checked_div(2 * denominator) {
-                    Some(factor) => factor,
-                    None => break,
-                };
+            // factor / 2^(16 + shift) = numerator / denominator. Below 2^98: nothing wraps.
+            let doubled = (numerator << (17 + shift)).wrapping_add(denominator);
+            let factor = match doubled.checked_div(2 * denominator) {
+                Some(factor) => factor,
+                None => break,
+            };
             if factor <= u16::MAX as u128 {
                 return Self {
                     factor: factor as u16,
