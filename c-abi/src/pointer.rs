@@ -5,7 +5,8 @@
 use crate::status::FpStatus;
 use core::mem::MaybeUninit;
 
-fn check<T>(at: *const T) -> Result<(), FpStatus> {
+/// Whether a pointer is neither null nor misaligned.
+pub(crate) fn check<T>(at: *const T) -> Result<(), FpStatus> {
     match (at.is_null(), at.is_aligned()) {
         (true, _) => Err(FpStatus::NullPointer),
         (_, false) => Err(FpStatus::Misaligned),

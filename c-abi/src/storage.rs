@@ -42,8 +42,7 @@ pub(crate) unsafe fn move_in<S: Storage>(
     if size != size_of::<S>() {
         return Err(FpStatus::WrongSize);
     }
-    // SAFETY: the contract.
-    unsafe { pointer::room(at) }?;
+    pointer::check(at)?;
     let house = at.cast::<House<S::Tenant>>();
     // SAFETY: the storage fits the house, and is neither null nor misaligned.
     unsafe {
@@ -59,8 +58,7 @@ pub(crate) unsafe fn move_in<S: Storage>(
 ///
 /// That of [`pointer`]; and what has the mark was written by [`move_in`], or is a copy of such.
 unsafe fn find<S: Storage>(at: *mut S) -> Result<*mut S::Tenant, FpStatus> {
-    // SAFETY: the contract.
-    unsafe { pointer::room(at) }?;
+    pointer::check(at)?;
     let house = at.cast::<House<S::Tenant>>();
     // SAFETY: the storage fits the house, and is neither null nor misaligned.
     unsafe {
