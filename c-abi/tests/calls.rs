@@ -2,12 +2,14 @@
 
 use fixed::types::I16F16;
 use fuzzypilot::behaviour::fine::FineController;
-use fuzzypilot::geometry::{Point, Pose};
+use fuzzypilot::geometry::Pose;
 use fuzzypilot::link::settings;
 use fuzzypilot::params::{Follower, Limits, Params};
+use fuzzypilot::ports::{Fault, Ports, Side, WheelCounts, WheelDrive, WheelEncoders};
 use fuzzypilot::presets;
 use fuzzypilot::tables::coarse::{CoarseSet, SpeedInput};
 use fuzzypilot::tables::fine::{FineSet, SpeedAxis};
+use fuzzypilot::tick::Robot;
 use fuzzypilot::units::{Angle, Metres, MetresPerSecond};
 use fuzzypilot_c::coarse::*;
 use fuzzypilot_c::fine::*;
@@ -15,6 +17,7 @@ use fuzzypilot_c::path::*;
 use fuzzypilot_c::robot::*;
 use fuzzypilot_c::status::{FpStatus, fp_status_text};
 use fuzzypilot_c::tick::*;
+use std::convert::Infallible;
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
@@ -400,23 +403,49 @@ fn wrong_inputs_drive_no_tick() {
     assert_eq!(tick(5, FpReading::default()), (FpStatus::Ok, 1, 0));
 }
 
+/// Ports of the library's own robot, beside the one for C.
+struct Counted(i32);
+
+impl WheelEncoders for Counted {
+    fn counts(&mut self) -> Result<WheelCounts, Fault> {
+        let [left, right] = [self.0, self.0 / 2];
+        Ok(WheelCounts { left, right })
+    }
+}
+
+impl WheelDrive for Counted {
+    type Error = Infallible;
+
+    fn set_speed(&mut self, _: Side, _: MetresPerSecond) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
 #[test]
 fn dead_reckoning_goes_on_at_rest() {
     let mut robot = robot(FpPreset::SmallRobot, 1);
+    let mut beside = Robot::new(presets::small_robot::<1>(), Pose::default());
     let mut pose = FpPose::default();
-    for counts in [0, 1 << 20] {
+    for counts in [0, 1 << 17, 1 << 18] {
+        let mut ports = Ports {
+            drive: Counted(counts),
+            encoders: Counted(counts),
+            ranges: (),
+        };
+        beside.rest(&mut ports);
         let inputs = FpInputs {
             left: counts,
-            right: counts,
+            right: counts / 2,
             ..zeroed()
         };
         // SAFETY: the pointers are references.
-        assert_eq!(unsafe { fp_robot_rest(&mut *robot, &inputs) }, FpStatus::Ok);
+        unsafe {
+            assert_eq!(fp_robot_rest(&mut *robot, &inputs), FpStatus::Ok);
+            assert_eq!(fp_robot_pose(&*robot, &mut pose), FpStatus::Ok);
+        }
+        assert_eq!(pose, FpPose::from(beside.pose()));
     }
-    // SAFETY: the pointers are references.
-    assert_eq!(unsafe { fp_robot_pose(&*robot, &mut pose) }, FpStatus::Ok);
-    let metre = Pose::new(Point::new(Metres::lit("1"), Metres::ZERO), Angle::ZERO);
-    assert_eq!(pose, FpPose::from(metre));
+    assert!(pose.x > 0 && pose.heading < 0, "{pose:?}");
 }
 
 #[test]

@@ -41,11 +41,11 @@ fn compare(kind: &str) {
 #[test]
 fn the_reference_avoids_and_follows() {
     let text = reference::print();
-    let avoided = text
+    let avoided: Option<&str> = text
         .lines()
         .find_map(|l| l.strip_prefix("of these avoiding: "));
     assert!(
-        (20..80).contains(&avoided.unwrap().parse().unwrap()),
+        (20..80).contains(&avoided.unwrap().parse::<i32>().unwrap()),
         "{text}"
     );
 }
