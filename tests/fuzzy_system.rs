@@ -21,7 +21,7 @@ impl Dice {
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
-        (u128::from(self.0.rotate_left(29)) * u128::from(n) >> 64) as u64
+        ((u128::from(self.0.rotate_left(29)) * u128::from(n)) >> 64) as u64
     }
 
     fn size(&mut self, most: u64) -> usize {
@@ -271,7 +271,7 @@ impl Made {
             Terms::Sets(samples, middles, sets) => {
                 let [low, high] = samples.range().map(f64::from);
                 let n = samples.count() as f64;
-                for j in 0..samples.count() {
+                parts.extend((0..samples.count()).map(|j| {
                     let implied = |&(term, degree, implication): &(usize, f64, Norm)| {
                         joined(
                             implication,
@@ -285,8 +285,8 @@ impl Made {
                     } else {
                         j as f64 / (n - 1.0)
                     };
-                    parts.push((w, low + at * (high - low)));
-                }
+                    (w, low + at * (high - low))
+                }));
             }
         }
         let weight: f64 = parts.iter().map(|p| p.0).sum();
@@ -1122,6 +1122,23 @@ proptest! {
             Err(other) => prop_assert!(false, "{other}"),
         };
     }
+}
+
+#[test]
+fn a_gap_without_a_foot_in_it_is_found() {
+    // Flanks so flat that they are below half a step for 32 steps beside their feet, which overlap: the gap is between.
+    let falling = trapezoid(-LIMIT, -LIMIT, -LIMIT, 20);
+    let rising = trapezoid(-20, LIMIT, LIMIT, LIMIT);
+    let terms: [&[Piece]; 2] = [&falling, &rising];
+    let rules = [Rule::new(&[&[Is(0, 0)], &[Is(0, 1)]], &[(0, 0)])];
+    let blocks = [Block::min(&rules)];
+    let outputs = [height(&[SEVEN])];
+    let open = [Input::new([-60, 60], &terms).with_gaps()];
+    let system = System::checked(&open, &blocks, &outputs).unwrap();
+    let fires = |x: i32| evaluate(&system, &[x]).1[0] > Degree::ZERO;
+    assert_eq!([-20, 0, 20].map(fires), [true, false, true]);
+    let flaw = System::checked(&[Input::new([-60, 60], &terms)], &blocks, &outputs).unwrap_err();
+    assert_eq!(flaw, Flaw::Gap { input: 0, at: 0 });
 }
 
 #[test]

@@ -167,6 +167,18 @@ fn what_is_adapted_is_named() {
             .unwrap()
             .contains("Centroid 101\n")
     );
+    // FCL wants a name for a rule block.
+    let fan = fs::read_to_string(design("fan.fll")).unwrap();
+    fs::write(
+        folder.path().join("fan.fll"),
+        fan.replace("RuleBlock: rules", "RuleBlock:"),
+    )
+    .unwrap();
+    convert(folder.path())
+        .args(["fan.fll", "--to", "fcl", "--adapt"])
+        .assert()
+        .success()
+        .stderr("note: the rule block 1 without a name is now `rules_1`\n");
     // Names of MATLAB's that no other format has.
     let fis = fs::read_to_string(design("cruise.fis")).unwrap();
     let fis = fis

@@ -72,28 +72,36 @@ impl FineController {
     /// heading error to the right is taken one step of 2⁻³² of a turn less.
     #[inline(always)]
     pub fn evaluate(&self, d: Metres, heading_error: Angle) -> FineMotion {
-        self.evaluate_by(FineTwin::evaluate, d, heading_error)
+        let (angle, distance) = self.positions(d, heading_error);
+        let twin = self.twin.evaluate(angle, distance);
+        self.motion(angle, distance, twin, heading_error)
     }
 
     /// [`evaluate`](Self::evaluate) without any processor's own instructions: the same result on every one.
     #[inline(always)]
     pub fn evaluate_plain(&self, d: Metres, heading_error: Angle) -> FineMotion {
-        self.evaluate_by(FineTwin::evaluate_plain, d, heading_error)
+        let (angle, distance) = self.positions(d, heading_error);
+        let twin = self.twin.evaluate_plain(angle, distance);
+        self.motion(angle, distance, twin, heading_error)
     }
 
     #[inline(always)]
-    fn evaluate_by(
+    fn positions(&self, d: Metres, heading_error: Angle) -> (Position, Position) {
+        let error = heading_error.bits();
+        // Half a turn is the axis: 2^31 of its 2^32 steps.
+        let angle = Position::from_bits(((error ^ (error >> 31)) as u32) << 1);
+        (angle, self.distance.position(d.bits()))
+    }
+
+    #[inline(always)]
+    fn motion(
         &self,
-        evaluate: impl Fn(&FineTwin, Position, Position) -> Twin<5, 5>,
-        d: Metres,
+        angle: Position,
+        distance: Position,
+        twin: Twin<5, 5>,
         heading_error: Angle,
     ) -> FineMotion {
-        let error = heading_error.bits();
-        let right = error >> 31;
-        // Half a turn is the axis: 2^31 of its 2^32 steps.
-        let angle = Position::from_bits(((error ^ right) as u32) << 1);
-        let distance = self.distance.position(d.bits());
-        let twin = evaluate(self.twin, angle, distance);
+        let right = heading_error.bits() >> 31;
         let yaw_rate = self.yaw_rate.apply(twin.second);
         FineMotion {
             speed: MetresPerSecond::from_bits(self.speed.apply(twin.first)),

@@ -1,8 +1,8 @@
 //! Even partitions: where all peaks of an axis are equally far apart, one multiplication finds the gap and the share in
 //! it, and where the gaps are a power of two, a shift.
 
-/// Full membership, negated as all grades are here: as factors of 16 bits −2¹⁵ is one, and 2¹⁵ is none.
-pub(super) const FULL: i32 = -(1 << 15);
+/// Full membership, as in a [`Grade`](super::Grade).
+pub(super) const FULL: i32 = 1 << 15;
 
 /// Where an input lies on an axis with evenly spaced terms: 0 is the first peak, 2³² would be the last.
 ///
@@ -16,8 +16,16 @@ pub struct Position(u32);
 pub(super) struct Place {
     /// The lower of the two terms around it, 0 to N − 2.
     pub lower: usize,
-    /// Grade of the upper term, negated: 0 to [`FULL`]; the lower one has the complement.
-    pub upper: i32,
+    /// How far on the way to the upper one, in 2³² steps.
+    pub share: u32,
+}
+
+impl Place {
+    /// Grade of the upper term, 0 to [`FULL`]; the lower one has the complement. Exact to half a step of 2⁻¹⁵.
+    #[inline(always)]
+    pub fn upper(&self) -> i32 {
+        ((self.share >> 16).wrapping_add(1) >> 1) as i32
+    }
 }
 
 impl Position {
@@ -36,17 +44,15 @@ impl Position {
         self.0
     }
 
-    /// Between which two of `N` terms. The grade is exact to half a step of 2⁻¹⁵.
+    /// Between which two of `N` terms.
     #[inline(always)]
     pub(super) fn place<const N: usize>(self) -> Place {
         // The gap above the point, the share in it below.
         let scaled = u64::from(self.0).wrapping_mul(N as u64 - 1);
-        let share = scaled as u32;
         Place {
             // In range as it is: `min` lets the optimiser drop bounds checks where the gaps are no power of two.
             lower: ((scaled >> 32) as usize).min(N - 2),
-            // Negated, half a step up becomes half a step down, as a shift does it.
-            upper: ((share >> 16) as i32).wrapping_neg() >> 1,
+            share: scaled as u32,
         }
     }
 }

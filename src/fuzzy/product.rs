@@ -10,13 +10,30 @@ pub(super) const fn mean(sum: i32, reciprocal: u32) -> i32 {
     return narrow::mean(sum, reciprocal);
 }
 
-/// `value · factor / 2¹⁶⁺ˢʰⁱᶠᵗ`, `shift` from 1 to 16.
-#[inline(always)]
-pub(super) const fn scaled(value: i32, factor: u16, shift: u8) -> i32 {
+/// A fraction to multiply by, `factor / 2¹⁶⁺ˢʰⁱᶠᵗ`, `shift` from 1 to 16, as the processor wants it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Fraction {
     #[cfg(not(narrow))]
-    return wide::scaled(value, factor, shift);
+    ready: wide::Fraction,
     #[cfg(narrow)]
-    return narrow::scaled(value, factor, shift);
+    ready: narrow::Fraction,
+}
+
+impl Fraction {
+    pub const fn new(factor: u16, shift: u8) -> Self {
+        Self {
+            #[cfg(not(narrow))]
+            ready: wide::Fraction::new(factor, shift),
+            #[cfg(narrow)]
+            ready: narrow::Fraction::new(factor, shift),
+        }
+    }
+
+    /// Times `value`.
+    #[inline(always)]
+    pub const fn of(self, value: i32) -> i32 {
+        self.ready.of(value)
+    }
 }
 
 /// Of the 64-bit product the upper half, which is an instruction of its own nearly everywhere.
@@ -27,12 +44,19 @@ mod wide {
         upper_half(sum, reciprocal.wrapping_shl(12) as i32)
     }
 
-    #[inline(always)]
-    pub const fn scaled(value: i32, factor: u16, shift: u8) -> i32 {
-        upper_half(
-            value,
-            (factor as i32).wrapping_shl(16u32.wrapping_sub(shift as u32)),
-        )
+    /// At the top of 32 bits, so that the product's upper half is the result.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Fraction(i32);
+
+    impl Fraction {
+        pub const fn new(factor: u16, shift: u8) -> Self {
+            Self((factor as i32).wrapping_shl(16u32.wrapping_sub(shift as u32)))
+        }
+
+        #[inline(always)]
+        pub const fn of(self, value: i32) -> i32 {
+            upper_half(value, self.0)
+        }
     }
 
     #[inline(always)]
@@ -49,9 +73,21 @@ mod narrow {
         sum.wrapping_add(beyond_one) >> 4
     }
 
-    #[inline(always)]
-    pub const fn scaled(value: i32, factor: u16, shift: u8) -> i32 {
-        times(value, factor as u32).wrapping_shr(shift as u32)
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Fraction {
+        factor: u16,
+        shift: u8,
+    }
+
+    impl Fraction {
+        pub const fn new(factor: u16, shift: u8) -> Self {
+            Self { factor, shift }
+        }
+
+        #[inline(always)]
+        pub const fn of(self, value: i32) -> i32 {
+            times(value, self.factor as u32).wrapping_shr(self.shift as u32)
+        }
     }
 
     /// `value · factor / 2^16`, rounded down, for a factor up to 2^16.
@@ -91,8 +127,14 @@ mod tests {
             for factor in (0..=u16::MAX).step_by(127).chain([1, u16::MAX]) {
                 for shift in 1..=16 {
                     let exact = (i64::from(value) * i64::from(factor)) >> (16 + shift);
-                    assert_eq!(i64::from(wide::scaled(value, factor, shift)), exact);
-                    assert_eq!(i64::from(narrow::scaled(value, factor, shift)), exact);
+                    assert_eq!(
+                        i64::from(wide::Fraction::new(factor, shift).of(value)),
+                        exact
+                    );
+                    assert_eq!(
+                        i64::from(narrow::Fraction::new(factor, shift).of(value)),
+                        exact
+                    );
                 }
             }
         }

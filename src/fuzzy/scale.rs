@@ -4,7 +4,7 @@
 //! multiplies no wider.
 
 use super::Position;
-use super::product::scaled;
+use super::product::Fraction;
 
 /// From a raw fixed-point number, 0 at an axis' first peak, to a position on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,44 +40,33 @@ impl InputScale {
     }
 }
 
-/// From a defuzzified number to a raw fixed-point one: a factor of 16 bits, and a shift.
+/// From a defuzzified number to a raw fixed-point one: a fraction of 16 significant bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OutputScale {
-    factor: u16,
-    /// 1 to 16, after 16 bits more.
-    shift: u8,
-}
+pub struct OutputScale(Fraction);
 
 impl OutputScale {
     /// Times `numerator / denominator`, to the nearest of 16 significant bits; below 2⁻¹⁷ fewer of them. Saturates at
     /// just below ½, also for a denominator of 0.
     pub const fn new(numerator: u64, denominator: u64) -> Self {
         let (numerator, denominator) = (numerator as u128, denominator as u128);
+        // The largest shift whose factor still has 16 bits.
         let mut shift = 16;
         while shift > 0 {
-            // factor / 2^(16 + shift) = numerator / denominator. Below 2^98: nothing wraps.
+            // Below 2^98: nothing wraps.
             let doubled = (numerator << (17 + shift)).wrapping_add(denominator);
-            let factor = match doubled.checked_div(2 * denominator) {
-                Some(factor) => factor,
-                None => break,
-            };
-            if factor <= u16::MAX as u128 {
-                return Self {
-                    factor: factor as u16,
-                    shift,
-                };
+            match doubled.checked_div(2 * denominator) {
+                Some(factor) if factor <= u16::MAX as u128 => {
+                    return Self(Fraction::new(factor as u16, shift));
+                }
+                _ => shift -= 1,
             }
-            shift -= 1;
         }
-        Self {
-            factor: u16::MAX,
-            shift: 1,
-        }
+        Self(Fraction::new(u16::MAX, 1))
     }
 
     /// Scales; rounds towards minus infinity.
     #[inline(always)]
     pub const fn apply(self, wide: i32) -> i32 {
-        scaled(wide, self.factor, self.shift)
+        self.0.of(wide)
     }
 }

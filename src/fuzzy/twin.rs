@@ -10,8 +10,7 @@
 
 use super::even::{Place, Position, are_even};
 use super::product::mean;
-use super::reciprocal::reciprocal;
-use super::weigh::{Edge, Weighed, weigh};
+use super::weigh::{Edge, Weighed, factor, weigh};
 use super::{Activation, Antecedents, RuleTable};
 
 /// Two complete rule tables of `R × C` rules over even partitions. `GAPS` is `R − 1`.
@@ -35,7 +34,17 @@ pub struct Twin<const R: usize, const C: usize> {
 const EXTRA_BITS: u32 = 12;
 
 impl<const R: usize, const C: usize> Twin<R, C> {
-    /// [`EXTRA_BITS`], for who scales an output.
+    #[inline(always)]
+    fn new(row: &Place, col: &Place, weighed: &Weighed) -> Self {
+        let [first, second] = weighed.sums;
+        Self {
+            first: mean(first, weighed.reciprocal),
+            second: mean(second, weighed.reciprocal),
+            activation: Activation::at(row.lower, col.lower, weighed.grades()),
+        }
+    }
+
+    /// Fractional bits that an output has more than its table's format.
     pub const EXTRA_BITS: u32 = EXTRA_BITS;
 
     /// Both outputs in their tables' own formats, rounded to nearest.
@@ -67,11 +76,7 @@ impl<const R: usize, const C: usize, const GAPS: usize> TwinTable<R, C, GAPS> {
             are_even(antecedents.rows.raw_peaks()) && are_even(antecedents.cols.raw_peaks()),
             "a twin table needs evenly spaced peaks on both inputs"
         );
-        let empty = Edge {
-            first: 0,
-            second: 0,
-        };
-        let mut edges = [[empty; C]; GAPS];
+        let mut edges = [[Edge::NONE; C]; GAPS];
         let mut row = 0;
         while row < GAPS {
             let mut col = 0;
@@ -93,41 +98,26 @@ impl<const R: usize, const C: usize, const GAPS: usize> TwinTable<R, C, GAPS> {
     /// exact mean over the grades.
     #[inline(always)]
     pub fn evaluate(&self, rows: Position, cols: Position) -> Twin<R, C> {
+        let (row, col) = (rows.place::<R>(), cols.place::<C>());
         #[cfg(dsp)]
-        return self.evaluate_by(super::dsp::weigh, rows, cols);
+        let weighed = super::dsp::weigh(&row, &col, self.edges_in(&row));
         #[cfg(not(dsp))]
-        return self.evaluate_plain(rows, cols);
+        let weighed = weigh(&row, &col, self.edges_in(&row));
+        Twin::new(&row, &col, &weighed)
     }
 
     /// [`evaluate`](Self::evaluate) without any processor's own instructions: the same result on every one.
     #[inline(always)]
     pub fn evaluate_plain(&self, rows: Position, cols: Position) -> Twin<R, C> {
-        self.evaluate_by(weigh, rows, cols)
-    }
-
-    #[inline(always)]
-    fn evaluate_by(
-        &self,
-        weigh: impl Fn(&Place, &Place, Edge, Edge) -> Weighed,
-        rows: Position,
-        cols: Position,
-    ) -> Twin<R, C> {
         let (row, col) = (rows.place::<R>(), cols.place::<C>());
-        let [left, right] = self.edges_at(row.lower, col.lower);
-        let weighed = weigh(&row, &col, left, right);
-        let reciprocal = reciprocal(weighed.excess);
-        Twin {
-            first: mean(weighed.sums[0], reciprocal),
-            second: mean(weighed.sums[1], reciprocal),
-            activation: Activation::at(row.lower, col.lower, weighed.grades()),
-        }
+        let weighed = weigh(&row, &col, self.edges_in(&row));
+        Twin::new(&row, &col, &weighed)
     }
 
     #[inline(always)]
-    fn edges_at(&self, row: usize, col: usize) -> [Edge; 2] {
-        let edges = &self.edges[row.min(GAPS - 1)];
-        let col = col.min(C - 2);
-        [edges[col], edges[col + 1]]
+    fn edges_in(&self, row: &Place) -> &[Edge; C] {
+        // In range as it is: `min` lets the optimiser drop the bounds check.
+        &self.edges[row.lower.min(GAPS - 1)]
     }
 }
 
@@ -136,10 +126,5 @@ const fn pair<const R: usize, const C: usize>(
     row: usize,
     col: usize,
 ) -> u32 {
-    negated(cells[row][col]) | negated(cells[row + 1][col]) << 16
-}
-
-/// No peak is the least 16-bit number: see [`Consequents`](super::Consequents).
-const fn negated(peak: i16) -> u32 {
-    peak.wrapping_neg() as u16 as u32
+    factor(cells[row][col]) as u16 as u32 | (factor(cells[row + 1][col]) as u16 as u32) << 16
 }

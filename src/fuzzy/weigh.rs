@@ -1,16 +1,23 @@
 //! The four rules around an input: their degrees, and the weighted sums of two outputs' peaks.
-//!
-//! Grades, degrees and peaks are all kept negated. As a factor of 16 bits −2¹⁵ is one and 2¹⁵ is none, and a product of
-//! two negated factors is what it would be without.
 
 use super::Grade;
 use super::even::{FULL, Place};
+use super::reciprocal::reciprocal;
 
-/// Two rules one above the other: their peaks in both outputs, the upper row's in the lower half.
+/// Two rules one above the other: their [`factor`]s in both outputs, the upper row's in the lower half.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) struct Edge {
     pub first: u32,
     pub second: u32,
+}
+
+impl Edge {
+    /// Two peaks of zero.
+    pub const NONE: Self = Self {
+        first: 0,
+        second: 0,
+    };
 }
 
 /// What the four rules weigh.
@@ -20,31 +27,35 @@ pub(super) struct Weighed {
     pub sums: [i32; 2],
     /// Their degrees, 0 to [`FULL`]: row by row, left before right.
     pub degrees: [i32; 4],
-    /// With f and g the two upper grades, min(f, 1 − f, g, 1 − g), not negated: Σw is one and twice this.
-    pub excess: u32,
+    /// [1/Σw](reciprocal).
+    pub reciprocal: u32,
 }
 
 impl Weighed {
     #[inline(always)]
     pub fn grades(&self) -> [Grade; 4] {
-        self.degrees
-            .map(|degree| Grade::from_bits((degree as u16).wrapping_neg()))
+        self.degrees.map(|degree| Grade::from_bits(degree as u16))
     }
 }
 
-/// Weighs the rules on the edges left and right of an input.
+/// Weighs the rules around an input; `edges` are those between its two rows.
 ///
 /// Two minima are enough: 1 − max(f, g) = 1 − f − g + min(f, g), and likewise with 1 − f for f.
 #[inline(always)]
-pub(super) fn weigh(row: &Place, col: &Place, left: Edge, right: Edge) -> Weighed {
-    let (f, g) = (row.upper, col.upper);
-    let below_right = weaker(f, g);
-    let above_right = weaker(FULL.wrapping_sub(f), g);
+pub(super) fn weigh<const C: usize>(row: &Place, col: &Place, edges: &[Edge; C]) -> Weighed {
+    // In range as it is: `min` lets the optimiser drop bounds checks.
+    let gap = col.lower.min(C - 2);
+    let [left, right] = [edges[gap], edges[gap + 1]];
+    let (f, g) = (row.upper(), col.upper());
+    let below_right = lesser(f, g);
+    let above_right = lesser(FULL.wrapping_sub(f), g);
     let above_left = FULL
         .wrapping_sub(f)
         .wrapping_sub(g)
         .wrapping_add(below_right);
     let below_left = f.wrapping_sub(g).wrapping_add(above_right);
+    // min(f, 1 − f, g, 1 − g): Σw is one and twice this.
+    let excess = below_right.wrapping_add(above_right).wrapping_sub(g);
     let degrees = [above_left, above_right, below_left, below_right];
     Weighed {
         sums: [
@@ -52,15 +63,15 @@ pub(super) fn weigh(row: &Place, col: &Place, left: Edge, right: Edge) -> Weighe
             sum(degrees, left.second, right.second),
         ],
         degrees,
-        excess: g.wrapping_sub(below_right).wrapping_sub(above_right) as u32,
+        reciprocal: reciprocal(excess as u32),
     }
 }
 
-/// The weaker of two negated grades, without a comparison: no compiler makes a branch of it.
+/// The lesser of two grades, without a comparison: no compiler makes a branch of it.
 #[inline(always)]
-fn weaker(a: i32, b: i32) -> i32 {
-    let stronger = a.wrapping_sub(b);
-    b.wrapping_add(stronger & !(stronger >> 31))
+fn lesser(a: i32, b: i32) -> i32 {
+    let difference = a.wrapping_sub(b);
+    b.wrapping_add(difference & (difference >> 31))
 }
 
 #[inline(always)]
@@ -74,10 +85,18 @@ fn sum(degrees: [i32; 4], left: u32, right: u32) -> i32 {
         .wrapping_add(product(below_right, below(right)))
 }
 
+/// What a degree is multiplied by for a peak.
+///
+/// Where processors multiply two 16-bit numbers, it is the peak negated, as the degrees are there: −2¹⁵ has 16 bits, and
+/// 2¹⁵, a full degree, has not. No peak is −2¹⁵: see [`Consequents`](super::Consequents).
+pub(super) const fn factor(peak: i16) -> i16 {
+    if cfg!(dsp) { peak.wrapping_neg() } else { peak }
+}
+
+/// A degree's product with a peak, given as its [`factor`].
 #[inline(always)]
-fn product(degree: i32, peak: i32) -> i32 {
-    // It has 16 bits already. Where products of those cost less, the compiler must see it.
+fn product(degree: i32, factor: i32) -> i32 {
     #[cfg(dsp)]
-    let degree = i32::from(degree as i16);
-    degree.wrapping_mul(peak)
+    let degree = i32::from(degree.wrapping_neg() as i16);
+    degree.wrapping_mul(factor)
 }

@@ -1,7 +1,7 @@
 //! What a designer wants to know of a system before it drives something: where no rule fires, what never counts, where a
 //! table turns, how far fixed point is from `f64`.
 //!
-//! Gaps, dead rules and terms out of reach are found exactly ([`coverage`]); rules that are always outdone and the error of
+//! Gaps, dead rules and terms out of reach are found exactly ([`coverage()`]); rules that are always outdone and the error of
 //! fixed point on a dense [`Grid`].
 
 mod accuracy;

@@ -6,17 +6,17 @@
 //! bound or need much memory: see [`limits`].
 
 pub mod adapt;
-pub mod checks;
-pub mod conditions;
-pub mod cursor;
+mod checks;
+mod conditions;
+mod cursor;
 pub mod error;
 pub mod fcl;
-pub mod fis;
+mod fis;
 pub mod fll;
-pub mod lexer;
+mod lexer;
 pub mod limits;
-pub mod norms;
-pub mod shapes;
+mod norms;
+mod shapes;
 pub mod writing;
 
 use crate::fuzzy::model::{Place, System};

@@ -150,7 +150,8 @@ pub fn held(system: &System, values: &[f64], axes: &[usize]) -> String {
     if others.is_empty() {
         String::new()
     } else {
-        format!("held: {}", others.join(", "))
+        // As the axes have their minus.
+        format!("held: {}", others.join(", ").replace("= -", "= −"))
     }
 }
 

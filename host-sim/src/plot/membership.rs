@@ -2,11 +2,11 @@
 
 use super::axis::Axis;
 use super::{
-    CENTRED, Canvas, FROM_LEFT, INK, MUTED, Panel, Point, Rect, document, fitted, shaded,
-    text_width, viridis,
+    CENTRED, Canvas, FROM_LEFT, FROM_RIGHT, INK, MUTED, Panel, Point, Rect, document, fitted,
+    shaded, text_width, viridis,
 };
 use anyhow::{Result, ensure};
-use plotters::style::{Color, RGBColor};
+use plotters::style::{Color, RGBColor, WHITE};
 use std::ops::Range;
 
 /// A variable and its terms, a panel of the figure.
@@ -168,7 +168,6 @@ fn draw(canvas: &Canvas, variable: &Variable, rect: Rect) -> Result<()> {
     };
     panel.axes(canvas, true)?;
     let count = variable.terms.len();
-    let mut texts = 0;
     for (index, term) in variable.terms.iter().enumerate() {
         let colour = colour(index, count);
         match &term.form {
@@ -181,22 +180,55 @@ fn draw(canvas: &Canvas, variable: &Variable, rect: Rect) -> Result<()> {
                 )?;
                 canvas.disc(panel.at(*at, 1.0), 5.0, colour.to_rgba())?;
             }
-            Form::Text(text) => {
-                // Six lines fill the panel; a formula more is told by the file.
-                let y = rect.top + 24.0 + 22.0 * f64::from(texts);
-                let text = match texts {
-                    0..=5 => format!("{}: {text}", term.name),
-                    6 => "…".to_owned(),
-                    _ => continue,
-                };
-                texts += 1;
-                let text = fitted(&text, 14.0, rect.width() - 40.0);
-                canvas.text(&text, (rect.left + 18.0, y), 14.0, colour, FROM_LEFT)?;
-            }
+            Form::Text(_) => {}
         }
     }
+    texts(canvas, variable, &panel)?;
     panel.frame(canvas)?;
     names(canvas, variable, &panel)
+}
+
+/// Terms that are words, on lines of their own over what is drawn.
+fn texts(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
+    let count = variable.terms.len();
+    let words = variable.terms.iter().enumerate();
+    let words = words.filter_map(|(index, term)| match &term.form {
+        Form::Text(text) => Some((format!("{}: {text}", term.name), colour(index, count))),
+        Form::Line(_) | Form::Stem(_) => None,
+    });
+    let stems = variable.terms.iter().filter_map(|term| match term.form {
+        Form::Stem(at) => Some(panel.at(at, 0.0).0),
+        Form::Line(_) | Form::Text(_) => None,
+    });
+    let stems: Vec<f64> = stems.collect();
+    for (place, (text, colour)) in words.enumerate() {
+        // Six lines fill the panel; what a seventh term says is told by the file.
+        let text = match place {
+            0..=5 => fitted(&text, 14.0, panel.rect.width() - 40.0),
+            6 => "…".to_owned(),
+            _ => break,
+        };
+        let width = text_width(&text, 14.0);
+        let left = free(&stems, panel.rect.left + 18.0, width, panel.rect.right);
+        let at = (left, panel.rect.top + 26.0 + 22.0 * place as f64);
+        let behind = Rect::new(left - 5.0, at.1 - 10.0, width + 10.0, 20.0);
+        canvas.block(&behind, WHITE.to_rgba())?;
+        canvas.text(&text, at, 14.0, colour, FROM_LEFT)?;
+    }
+    Ok(())
+}
+
+/// Where something of this width stands clear of all stems, from the left; at the left if nowhere.
+fn free(stems: &[f64], left: f64, width: f64, right: f64) -> f64 {
+    let clear = |from: f64| {
+        let (first, last) = (from - 12.0, from + width + 12.0);
+        !stems.iter().any(|x| (first..=last).contains(x))
+    };
+    (0..)
+        .map(|step| left + 20.0 * f64::from(step))
+        .take_while(|from| from + width < right)
+        .find(|from| clear(*from))
+        .unwrap_or(left)
 }
 
 fn colour(index: usize, count: usize) -> RGBColor {
@@ -224,8 +256,10 @@ fn line(canvas: &Canvas, points: &[(f64, f64)], colour: RGBColor, panel: &Panel)
     }
     // In runs of what lies inside, so that joints are round.
     let mut run: Vec<Point> = Vec::new();
-    for pair in top.windows(2) {
-        match panel.rect.clip_line(pair[0], pair[1]) {
+    for (pair, ends) in top.windows(2).zip(points.windows(2)) {
+        // Where there is nothing of a term the axis shows.
+        let some = ends[0].1 > 0.0 || ends[1].1 > 0.0;
+        match panel.rect.clip_line(pair[0], pair[1]).filter(|_| some) {
             Some((from, to)) => {
                 if run.last() != Some(&from) {
                     canvas.line(&run, 2.0, colour.to_rgba())?;
@@ -294,15 +328,16 @@ fn names(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
         );
         canvas.text(&name, at, 13.5, colour(index, count), CENTRED)?;
     }
-    if ends == [f64::NEG_INFINITY; 2] && count > 0 && variable.span() == variable.axis.span() {
-        let formulas = variable
-            .terms
-            .iter()
-            .all(|term| matches!(term.form, Form::Text(_)));
-        if !formulas {
-            let at = panel.rect.centre();
-            canvas.text("no term reaches this range", at, 13.5, MUTED, CENTRED)?;
-        }
+    let nowhere = |term: &&TermCurve| {
+        !matches!(term.form, Form::Text(_)) && place(&term.form, &panel.x).is_none()
+    };
+    let nowhere = variable.terms.iter().filter(nowhere);
+    let nowhere: Vec<&str> = nowhere.map(|term| term.name.as_str()).collect();
+    if !nowhere.is_empty() {
+        let text = format!("out of this range: {}", nowhere.join(", "));
+        let text = fitted(&text, 12.5, panel.rect.width() / 2.5);
+        let at = (panel.rect.right, panel.rect.bottom + 36.0);
+        canvas.text(&text, at, 12.5, MUTED, FROM_RIGHT)?;
     }
     Ok(())
 }
@@ -391,8 +426,8 @@ mod tests {
     #[test]
     fn odd_variables() {
         let mut odd = variables();
-        odd[0].axis.range = (1000.0, 2000.0);
-        assert!(sound(&odd).contains("no term reaches this range"));
+        odd[0].axis.range = (185.0, 2000.0);
+        assert!(sound(&odd).contains("out of this range: ahead, abeam"));
         odd[0].terms.clear();
         assert!(membership_svg("", &odd).is_err());
         let mut odd = variables();

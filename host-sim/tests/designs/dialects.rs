@@ -297,3 +297,90 @@ fn matlab_is_read() {
     assert_eq!(block.rules[1].antecedent, is(0, 1, true));
     assert_eq!(block.rules[1].weight, 0.25);
 }
+
+/// Each format has the numbers of its shapes in an order of its own.
+#[test]
+fn numbers_of_shapes_stand_where_each_format_has_them() {
+    let gaussian = Shape::Gaussian {
+        mean: 3.0,
+        deviation: 0.5,
+    };
+    let two_sided = Shape::TwoSidedGaussian {
+        left: (2.0, 0.25),
+        right: (4.0, 0.75),
+    };
+    let bell = Shape::Bell {
+        centre: 5.0,
+        width: 2.0,
+        slope: 3.0,
+    };
+    let sigmoid = Shape::Sigmoid {
+        inflection: 6.0,
+        slope: -2.0,
+    };
+    let s = Shape::Spline { from: 1.0, to: 2.0 };
+    let z = Shape::Spline { from: 2.0, to: 1.0 };
+    let up = Shape::Ramp { from: 1.0, to: 2.0 };
+    let down = Shape::Ramp { from: 2.0, to: 1.0 };
+    let block = Shape::Trapezoid {
+        left: 1.0,
+        rise: 1.0,
+        fall: 2.0,
+        right: 2.0,
+    };
+    let points = Shape::Points(vec![(0.0, 0.25), (1.0, 0.75), (1.0, 1.0)]);
+    let fll = [
+        ("Gaussian 3 0.5", &gaussian),
+        ("GaussianProduct 2 0.25 4 0.75", &two_sided),
+        ("Bell 5 2 3", &bell),
+        ("Sigmoid 6 -2", &sigmoid),
+        ("SShape 1 2", &s),
+        ("ZShape 1 2", &z),
+        ("Ramp 1 2", &up),
+        ("Ramp 2 1", &down),
+        ("Rectangle 1 2", &block),
+        ("Rectangle 4 4", &Shape::Singleton(4.0)),
+        ("Discrete 0 0.25 1 0.75 1 1", &points),
+        ("Discrete 1 0 2 1", &up),
+    ];
+    for (text, wanted) in fll {
+        let text = FLL.replace("Ramp 0.500 1.000", text);
+        assert_eq!(read(&text, Format::Fll).inputs[0].terms[1].shape, *wanted);
+    }
+    let fcl = [
+        ("GAUSS 3 0.5", &gaussian),
+        ("GAUSS2 2 0.25 4 0.75", &two_sided),
+        ("GBELL 2 3 5", &bell),
+        ("Bell 5 2 3", &bell),
+        ("SIGM -2 6", &sigmoid),
+        ("Sigmoid 6 -2", &sigmoid),
+        ("SShape 1 2", &s),
+        ("ZShape 1 2", &z),
+        ("(1, 1) (2, 0)", &down),
+        ("(1, 0) (1, 1) (2, 1) (2, 0)", &block),
+        ("TRAPE 1 1 2 2", &block),
+        ("4", &Shape::Singleton(4.0)),
+        ("(0, 0.25) (1, 0.75) (1, 1)", &points),
+    ];
+    for (text, wanted) in fcl {
+        let text = FCL.replace("TRIAN 2 5 8", text);
+        let text = text.replace("level : REAL;", "level : REAL; RANGE := (0 .. 10);");
+        assert_eq!(read(&text, Format::Fcl).inputs[0].terms[1].shape, *wanted);
+    }
+    let fis = [
+        ("'gaussmf',[0.5 3]", &gaussian),
+        ("'gauss2mf',[0.25 2 0.75 4]", &two_sided),
+        ("'gbellmf',[2 3 5]", &bell),
+        ("'sigmf',[-2 6]", &sigmoid),
+        ("'smf',[1 2]", &s),
+        ("'zmf',[1 2]", &z),
+        ("'linsmf',[1 2]", &up),
+        ("'linzmf',[1 2]", &down),
+        ("'rectmf',[1 2]", &block),
+        ("'discretemf',[0 0.25 1 0.75 1 1]", &points),
+    ];
+    for (text, wanted) in fis {
+        let text = FIS.replace("'sigmf',[-2 6]", text);
+        assert_eq!(read(&text, Format::Fis).inputs[0].terms[1].shape, *wanted);
+    }
+}

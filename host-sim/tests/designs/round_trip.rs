@@ -39,7 +39,7 @@ fn has_open(system: &System) -> bool {
 }
 
 proptest! {
-    #![proptest_config(config(3_000))]
+    #![proptest_config(config(1_000))]
 
     #[test]
     fn fll_reads_as_it_was_written(mut system in system()) {

@@ -516,7 +516,8 @@ const fn holds(rule: &Rule<'_>, terms: &[u8; MAX_INPUTS]) -> bool {
 }
 
 impl Defuzzifier<'_> {
-    const fn term_count(&self) -> usize {
+    /// How many terms it has.
+    pub(super) const fn term_count(&self) -> usize {
         match self {
             Self::WeightedAverage { terms, .. } => terms.len(),
             Self::Centroid { terms, .. } => terms.len(),

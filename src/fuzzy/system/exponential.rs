@@ -27,24 +27,39 @@ pub(super) const fn decay(x: i64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::{decay, exponential};
 
+    const ONE: i64 = 1 << 32;
+
+    /// A mantissa is right to 2^-55, five of its last places and a bit.
+    fn is(x: i64, mantissa: u64, power: i32) {
+        let (found, of) = exponential(x);
+        assert!(
+            of == power && found.abs_diff(mantissa) <= 1 << 5,
+            "{x}: {found} · 2^{of}, not {mantissa} · 2^{power}"
+        );
+    }
+
     #[test]
-    fn it_is_the_exponential_function() {
-        for i in -4000..4000 {
-            let x = i * 37_000_001;
-            let real = x as f64 / 4_294_967_296.0;
-            let (mantissa, power) = exponential(x);
-            let got = mantissa as f64 / (1u64 << 60) as f64 * f64::powi(2.0, power);
-            assert!((got / real.exp() - 1.0).abs() < 1e-13, "{real}");
-            if x >= 0 {
-                let got = decay(x) as f64 / (1u64 << 60) as f64;
-                assert!((got - (-real).exp()).abs() < 1e-15, "{real}");
-            }
+    fn powers_of_e_are_known() {
+        // e^x / 2^power with 60 fractional bits.
+        is(0, 1 << 60, 0);
+        is(ONE, 1_566_982_787_806_226_771, 1);
+        is(-ONE, 1_696_544_475_317_221_319, -2);
+        is(ONE / 2, 1_900_846_208_092_904_393, 0);
+        is(10 * ONE, 1_549_974_736_652_820_383, 14);
+        is(-20 * ONE, 1_275_792_298_167_396_070, -29);
+    }
+
+    #[test]
+    fn a_sum_makes_a_product() {
+        for i in 0..200 {
+            let (x, y) = (i * 61_000_003, i * 13_000_001 + 7);
+            let product = ((u128::from(decay(x)) * u128::from(decay(y))) >> 60) as u64;
+            assert!(decay(x + y).abs_diff(product) <= 64, "{x}, {y}");
+            assert!(decay(x) > decay(x + 100_000_000), "{x}");
         }
-        assert_eq!(exponential(0), (1 << 60, 0));
         assert_eq!(decay(0), 1 << 60);
-        assert_eq!(decay(100 << 32), 0);
+        assert_eq!(decay(100 * ONE), 0);
     }
 }

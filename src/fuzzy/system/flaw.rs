@@ -190,8 +190,7 @@ impl Flaw {
             Self::Pieces { input, term, piece } => text
                 .named("input", input)
                 .named(", term", term)
-                .and(": its points must ascend and its pieces meet, which ends at")
-                .named("", piece),
+                .named(": its pieces must ascend and meet, unlike piece", piece),
             Self::Gap { input, at } => text
                 .named("input", input)
                 .and(" has a gap: no term holds at ")
@@ -271,7 +270,7 @@ impl Flaw {
             Self::Accumulator { output } => text.named("output", output).and(
                 ": its weighted sums could overflow; take fewer rules or a coarser number format",
             ),
-            Self::Sizes => text.and("a controller's sizes are its system's: inputs, terms of the inputs, rules, outputs"),
+            Self::Sizes => text.and("a controller's sizes are its system's: inputs, terms, rules, outputs"),
         }
     }
 }
@@ -357,48 +356,48 @@ impl Text {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::{Flaw, Text};
-    use std::string::ToString;
 
     #[test]
     fn numbers_are_written_in_full() {
-        for number in [0, 7, 10, -1, 99, 100, -1_073_741_822, i64::MAX, i64::MIN] {
-            assert_eq!(Text::new().number(number).as_str(), number.to_string());
+        for (number, text) in [
+            (0, "0"),
+            (7, "7"),
+            (10, "10"),
+            (-1, "-1"),
+            (99, "99"),
+            (100, "100"),
+            (-1_073_741_822, "-1073741822"),
+            (i64::MAX, "9223372036854775807"),
+            (i64::MIN, "-9223372036854775808"),
+        ] {
+            assert_eq!(Text::new().number(number).as_str(), text);
         }
     }
 
     #[test]
     fn the_longest_message_fits() {
-        let most = usize::MAX;
+        // The largest places that there are.
+        let (output, term) = (254, 254);
         let hole = Flaw::Hole {
-            output: most,
-            terms: [255; 4],
+            output,
+            terms: [254; 4],
             inputs: 4,
         };
-        assert!(
-            hole.to_string()
-                .ends_with("255, 255, 255, 255 of the inputs")
-        );
+        let pieces = Flaw::Pieces {
+            input: 3,
+            term,
+            piece: 1_000_000,
+        };
         for (flaw, end) in [
-            (
-                Flaw::Coefficients {
-                    output: most,
-                    term: most,
-                },
-                "a shift of 0 to 60",
-            ),
-            (
-                Flaw::Pieces {
-                    input: most,
-                    term: most,
-                    piece: 3,
-                },
-                "at 3",
-            ),
-            (Flaw::Accumulator { output: most }, "number format"),
+            (hole, "254, 254, 254, 254 of the inputs"),
+            (pieces, "unlike piece 1000000"),
+            (Flaw::Coefficients { output, term }, "a shift of 0 to 60"),
+            (Flaw::OutOfRange { output, term }, "is not limited"),
+            (Flaw::Accumulator { output }, "number format"),
         ] {
-            assert!(flaw.to_string().ends_with(end), "{flaw}");
+            let text = flaw.text();
+            assert!(text.as_str().ends_with(end), "{}", text.as_str());
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod budgets;
 pub mod clock;
 pub mod counts;
 pub mod digests;
+pub mod engine;
 pub mod exact;
 pub mod footprint;
 pub mod machine;

@@ -1,4 +1,4 @@
-//! `cargo bit-exact` and `cargo budgets`.
+//! `cargo bit-exact`, `cargo budgets`, `cargo engine` and `cargo systems`.
 
 use anyhow::{Context, bail, ensure};
 use clap::{Args, Parser, Subcommand};
@@ -6,7 +6,7 @@ use comfy_table::{Table, presets::NOTHING};
 use measure::budgets::{Budgets, Measured, readme};
 use measure::counts::{COUNTED, count};
 use measure::machine::{Images, MACHINES, Missing};
-use measure::{clock, digests, exact, footprint, suite, systems};
+use measure::{clock, digests, engine, exact, footprint, suite, systems};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -26,6 +26,8 @@ enum Command {
     Budgets(Write),
     /// Evaluate general fuzzy systems: the same bits everywhere, the same count of instructions for every input.
     Systems,
+    /// Count one evaluation of the fine controller over a grid, and compare results and costs with what is allowed.
+    Engine,
 }
 
 #[derive(Args)]
@@ -49,6 +51,7 @@ fn main() -> ExitCode {
         Command::BitExact(arguments) => bit_exact(&arguments),
         Command::Budgets(arguments) => budgets(arguments.write),
         Command::Systems => systems(),
+        Command::Engine => engine::run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,6 +4,7 @@
 //! The tick is deterministic and a tape holds all its inputs. So as long as every output agrees with the recorded one,
 //! playing a tape in open loop *is* the closed loop that was recorded: the plant would have answered the same.
 
+pub mod fine;
 pub mod systems;
 pub mod tape;
 

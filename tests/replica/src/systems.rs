@@ -6,7 +6,7 @@ use fuzzypilot::fuzzy::system::shape::{bell, gaussian, ramp, sigmoid, trapezoid,
 use fuzzypilot::fuzzy::system::{
     Block, Controller, Defuzzifier, Degree, Input, Linear,
     Literal::{Is, IsNot},
-    Merge, Norm,
+    Merge,
     Number::{self, Constant},
     Output, Rule, Samples, Set, System,
 };
@@ -154,7 +154,7 @@ static MUCH: [Grade; 50] = SAMPLES.of(&gaussian::<33>(q("25"), q("2.5") as i64))
 
 static SETS: [Set<'static>; 3] = [&LITTLE, &SOME, &MUCH];
 
-/// Both merges, both implications.
+/// Sets that are cut off: merged term by term where the largest counts, rule by rule where they are added.
 pub static MAMDANI: Mamdani = {
     const fn output(merge: Merge) -> Output<'static> {
         Output {
@@ -185,20 +185,12 @@ pub static MAMDANI: Mamdani = {
             )
             .with_gaps(),
         ],
-        &[
-            Block::min(&[
-                Rule::new(&[&[Is(0, 0)], &[Is(1, 0)]], &[(0, 0), (1, 0)]),
-                Rule::new(&[&[Is(0, 2)], &[Is(1, 1)]], &[(0, 2), (1, 2)]),
-            ]),
-            Block {
-                and: Norm::Min,
-                implication: Norm::Product,
-                rules: &[
-                    Rule::new(&[&[Is(0, 1)]], &[(0, 1), (1, 1)]),
-                    Rule::new(&[&[Is(0, 0), Is(1, 1)]], &[(0, 1), (1, 0)]),
-                ],
-            },
-        ],
+        &[Block::min(&[
+            Rule::new(&[&[Is(0, 0)], &[Is(1, 0)]], &[(0, 0), (1, 0)]),
+            Rule::new(&[&[Is(0, 2)], &[Is(1, 1)]], &[(0, 2), (1, 2)]),
+            Rule::new(&[&[Is(0, 1)]], &[(0, 1), (1, 1)]),
+            Rule::new(&[&[Is(0, 0), Is(1, 1)]], &[(0, 1), (1, 0)]),
+        ])],
         &[output(Merge::Max), output(Merge::Sum)],
     ))
 };

@@ -1,7 +1,7 @@
 //! The points at which a system is looked at when pieces cannot tell: a dense grid with every knot in it.
 
 use crate::fuzzy::evaluate::rules;
-use crate::fuzzy::model::{Defuzzifier, Input, System};
+use crate::fuzzy::model::{Defuzzifier, Input, Shape, System};
 
 /// Points of a grid unless told otherwise.
 pub const POINTS: usize = 100_000;
@@ -110,10 +110,10 @@ fn even(input: &Input, each: usize) -> Vec<f64> {
 fn knots(input: &Input) -> Vec<f64> {
     let beside = (input.range.end() - input.range.start()) * BESIDE;
     let terms = || input.terms.iter().map(|term| &term.shape);
-    let mut knots: Vec<f64> = terms().flat_map(|shape| shape.knots()).collect();
+    let mut knots: Vec<f64> = terms().flat_map(Shape::knots).collect();
     knots.extend(
         terms()
-            .flat_map(|shape| shape.jumps())
+            .flat_map(Shape::jumps)
             .flat_map(|x| [x - beside, x + beside]),
     );
     knots.retain(|x| input.range.contains(x));

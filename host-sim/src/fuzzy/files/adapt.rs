@@ -35,6 +35,17 @@ pub fn to_fcl(system: &mut System) -> Vec<String> {
     for block in &mut system.blocks {
         word(&mut block.name, "rule block");
     }
+    // The norm and jFuzzyLogic want one; FuzzyLite does not.
+    for (i, block) in system.blocks.iter_mut().enumerate() {
+        if block.name.is_empty() {
+            block.name = format!("rules_{}", i + 1);
+            changes.push(format!(
+                "the rule block {} without a name is now `{}`",
+                i + 1,
+                block.name
+            ));
+        }
+    }
     changes
 }
 

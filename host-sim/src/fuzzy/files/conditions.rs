@@ -1,6 +1,7 @@
 //! Rules as text: `x is a and (y is not b or z is c)`, then what they conclude. FLL and FCL share this grammar; AND binds
 //! tighter than OR.
 
+use super::checks;
 use super::cursor::{Cursor, Parameter};
 use super::error::{ReadError, Source, one_of, quoted};
 use super::lexer::Token;
@@ -207,6 +208,13 @@ impl<'s> Reader<'s, '_, '_> {
                 return Err(self.source.error(output.place, found, "each output once"));
             }
             all.push((output, term));
+            checks::count(
+                self.source,
+                output.place,
+                "conclusions",
+                all.len(),
+                limits::OUTPUTS,
+            )?;
             if self.cursor.at_word("or") {
                 let found = "`or` in a conclusion is not supported";
                 let place = self.cursor.peek().place;
@@ -247,7 +255,7 @@ impl WrittenRule<'_> {
             .collect::<Result<_, _>>()?;
         let weight = match self.weight {
             None => 1.0,
-            Some(weight) => super::checks::weight(source, weight)?,
+            Some(weight) => checks::weight(source, weight)?,
         };
         Ok(Rule {
             antecedent,

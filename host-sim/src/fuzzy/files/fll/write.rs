@@ -1,6 +1,6 @@
 //! A system as FLL, every property said.
 
-use super::{RESERVED_NAMES, written};
+use super::RESERVED_NAMES;
 use crate::fuzzy::files::writing::{
     RuleStyle, WriteError, check, number, numbers, refuse_adaptable, rule,
 };
@@ -169,4 +169,35 @@ fn free(name: &str, what: &str) -> Result<String, WriteError> {
         );
     }
     Ok(name.to_owned())
+}
+
+/// FLL's name of a shape and its numbers.
+fn written(shape: &Shape) -> (&'static str, Vec<f64>) {
+    match *shape {
+        Shape::Triangle { left, peak, right } => ("Triangle", vec![left, peak, right]),
+        Shape::Trapezoid {
+            left,
+            rise,
+            fall,
+            right,
+        } => ("Trapezoid", vec![left, rise, fall, right]),
+        Shape::Ramp { from, to } => ("Ramp", vec![from, to]),
+        Shape::Singleton(x) => ("Rectangle", vec![x, x]),
+        Shape::Points(ref points) => (
+            "Discrete",
+            points.iter().flat_map(|&(x, y)| [x, y]).collect(),
+        ),
+        Shape::Gaussian { mean, deviation } => ("Gaussian", vec![mean, deviation]),
+        Shape::TwoSidedGaussian { left, right } => {
+            ("GaussianProduct", vec![left.0, left.1, right.0, right.1])
+        }
+        Shape::Bell {
+            centre,
+            width,
+            slope,
+        } => ("Bell", vec![centre, width, slope]),
+        Shape::Sigmoid { inflection, slope } => ("Sigmoid", vec![inflection, slope]),
+        Shape::Spline { from, to } if from < to => ("SShape", vec![from, to]),
+        Shape::Spline { from, to } => ("ZShape", vec![to, from]),
+    }
 }
