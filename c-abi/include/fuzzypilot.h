@@ -159,9 +159,9 @@ enum fp_setting
     FP_SETTING_RING_MAX_AGE = 32,
     /// ring.gap: m / 2^16.
     FP_SETTING_RING_GAP = 33,
-    /// ring.radius[0]: m / 2^16.
+    /// ring.radius, smallest: m / 2^16.
     FP_SETTING_RING_RADIUS_SMALLEST = 34,
-    /// ring.radius[1]: m / 2^16.
+    /// ring.radius, largest: m / 2^16.
     FP_SETTING_RING_RADIUS_LARGEST = 35,
     /// ring.residual: m / 2^16.
     FP_SETTING_RING_RESIDUAL = 36,

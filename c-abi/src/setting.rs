@@ -35,9 +35,9 @@ pub enum FpSetting {
     RingMaxAge = 32,
     /// ring.gap: m / 2^16.
     RingGap = 33,
-    /// ring.radius[0]: m / 2^16.
+    /// ring.radius, smallest: m / 2^16.
     RingRadiusSmallest = 34,
-    /// ring.radius[1]: m / 2^16.
+    /// ring.radius, largest: m / 2^16.
     RingRadiusLargest = 35,
     /// ring.residual: m / 2^16.
     RingResidual = 36,

@@ -33,7 +33,7 @@ pub(crate) const fn fits<S: Storage>() -> bool {
 ///
 /// # Safety
 ///
-/// That of [`pointer`], and `make` writes all of the tenant.
+/// That of [`mod@pointer`], and `make` writes all of the tenant.
 pub(crate) unsafe fn move_in<S: Storage>(
     at: *mut S,
     size: usize,
@@ -56,7 +56,7 @@ pub(crate) unsafe fn move_in<S: Storage>(
 ///
 /// # Safety
 ///
-/// That of [`pointer`]; and what has the mark was written by [`move_in`], or is a copy of such.
+/// That of [`mod@pointer`]; and what has the mark was written by [`move_in`], or is a copy of such.
 unsafe fn find<S: Storage>(at: *mut S) -> Result<*mut S::Tenant, FpStatus> {
     pointer::check(at)?;
     let house = at.cast::<House<S::Tenant>>();

@@ -9,7 +9,7 @@ use core::mem::MaybeUninit;
 ///
 /// # Safety
 ///
-/// That of [`pointer`], for `room` characters.
+/// That of [`mod@pointer`], for `room` characters.
 pub(crate) unsafe fn write(to: *mut c_char, room: usize, parts: &[&str]) -> Result<(), FpStatus> {
     if room == 0 {
         return Err(FpStatus::WrongSize);
