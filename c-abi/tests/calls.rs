@@ -573,3 +573,18 @@ fn pointers_and_sizes_are_checked() {
         assert_eq!(fp_robot_get(&copy, 1, &mut value), FpStatus::Ok);
     }
 }
+
+#[test]
+fn the_page_has_the_sizes() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/c.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    for (name, size) in [
+        ("fp_robot", size_of::<FpRobot>()),
+        ("fp_path", size_of::<FpPath>()),
+        ("fp_fine", size_of::<FpFine>()),
+    ] {
+        let row = page.lines().find(|l| l.starts_with(&format!("| `{name}`")));
+        let cell = row.and_then(|row| row.split('|').nth(2)).unwrap();
+        assert_eq!(cell.trim().replace(',', ""), size.to_string(), "{name}");
+    }
+}
