@@ -52,7 +52,8 @@ impl OutputScale {
         // The largest shift whose factor still has 16 bits.
         let mut shift = 16;
         while shift > 0 {
-            let doubled = (numerator << (17 + shift)) + denominator;
+            // Below 2^98: nothing wraps.
+            let doubled = (numerator << (17 + shift)).wrapping_add(denominator);
             match doubled.checked_div(2 * denominator) {
                 Some(factor) if factor <= u16::MAX as u128 => {
                     return Self(Fraction::new(factor as u16, shift));

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""No image can panic: tests/firmware/panic_free.py IMAGE ...
+"""No image can panic: tests/firmware/panic_free.py [--c] IMAGE ...
 
 Checked: no symbol of the images given is panic code; and the check would tell: a copy of the sources with one `unwrap` of
-what is known at run time only does not link, and the linker says why.
+what is known at run time only does not link, and the linker says why. With --c the images are those of examples/c, and so
+is what does not link; without, the firmware's.
 """
 
 import os
@@ -18,8 +19,17 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # What the panic handler of a release image calls, and nobody has written.
 HANDLER = "a_panic_is_left_in_the_release_image"
 PANIC = re.compile(r"panic|unwrap_failed|expect_failed|slice_index_fail|rust_begin_unwind")
-# Where a byte of the link is taken, in a function that runs all the time.
-PLACE = ("src/main/board.rs", "    fn due(&mut self) -> bool {\n", "        serial::RECEIVED.pop().unwrap();\n")
+# File, line there, what comes behind it, and how the image is built.
+FIRMWARE = (
+    # Where a byte of the link is taken, in a function that runs all the time.
+    "src/main/board.rs", "    fn due(&mut self) -> bool {\n", "        serial::RECEIVED.pop().unwrap();\n",
+    [os.environ.get("CARGO", "cargo"), "fw"],
+)
+C = (
+    # Where the readings for a tick have just been counted.
+    "c-abi/src/tick.rs", "        let decided = state.robot.tick(&path, &mut ports);\n", "        seen.first().unwrap();\n",
+    ["bash", "examples/c/build", "--no-run", "m4"],
+)
 
 
 def symbols(path):
@@ -54,20 +64,18 @@ def images(paths):
         print(f"{pathlib.Path(path).name}: no panic among {len(found)} symbols")
 
 
-def one_more():
+def one_more(path, before, panic, build):
     """Adds a panic to a copy and builds it."""
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder) / "copy"
         shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", "target", "out"))
-        path, before, panic = PLACE
         source = (copy / path).read_text()
         if source.count(before) != 1:
             sys.exit(f"panic_free.py: {path}: {before.strip()!r} is not there once")
         (copy / path).write_text(source.replace(before, before + panic))
-        cargo = os.environ.get("CARGO", "cargo")
         # Its own build folder: files of two copies of one package do not mix.
         environment = {**os.environ, "CARGO_TARGET_DIR": os.path.join(folder, "target")}
-        built = subprocess.run([cargo, "fw"], cwd=copy, env=environment, capture_output=True, text=True)
+        built = subprocess.run(build, cwd=copy, env=environment, capture_output=True, text=True)
         if built.returncode == 0:
             sys.exit("panic_free.py: an image with an unwrap in it was linked")
         if HANDLER not in built.stderr:
@@ -76,7 +84,9 @@ def one_more():
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
+    of_c = sys.argv[1:2] == ["--c"]
+    paths = sys.argv[2 if of_c else 1:]
+    if not paths:
         sys.exit(__doc__)
-    images(sys.argv[1:])
-    one_more()
+    images(paths)
+    one_more(*(C if of_c else FIRMWARE))
