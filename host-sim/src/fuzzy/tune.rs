@@ -8,6 +8,7 @@
 //! ties stay ties ([`Movable`]), so whatever partition the design has it keeps; a candidate that the library's own checks
 //! refuse is never judged.
 
+mod changes;
 pub mod data;
 mod fit;
 mod hash;
@@ -17,9 +18,11 @@ mod numbers;
 mod search;
 pub mod state;
 
+pub use changes::{Change, changes};
 pub use fit::{Fit, OutputFit};
 pub use hash::Hash;
 pub use movable::{Movable, Selection};
+pub use numbers::Variable;
 pub use search::{Best, Outcome, Progress, Search, SearchError, Settings, Stop};
 
 use super::lower::Lowered;

@@ -68,7 +68,8 @@ pub fn execute(arguments: &ConvertArguments) -> anyhow::Result<()> {
     }
 }
 
-fn refused(file: &Path, error: &WriteError, adapted: bool) -> BadInput {
+/// What a writer refuses, in the user's file.
+pub(super) fn refused(file: &Path, error: &WriteError, adapted: bool) -> BadInput {
     let line = match error.place.line {
         0 => String::new(),
         line => format!(":{line}:{}", error.place.column),
