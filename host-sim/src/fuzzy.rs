@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod describe;
+pub mod emit;
 pub mod evaluate;
 pub mod files;
 pub mod lower;

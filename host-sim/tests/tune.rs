@@ -102,6 +102,19 @@ fn a_known_design_is_found_again() {
     for (found, wanted) in constants(&tuned, 0).iter().zip([0.0, 40.0, 100.0]) {
         assert!((found - wanted).abs() < 0.05, "{found}, not {wanted}");
     }
+    let head = fs::read_to_string(folder.path().join("found/tuned.fll")).unwrap();
+    assert!(
+        head.starts_with(
+            "# fan: host-sim fuzzy tune detuned.fll --data data.csv --ignore 'fan (fixed)' --validate 0.2 --seed 1"
+        ),
+        "{head}"
+    );
+    let module = fs::read_to_string(folder.path().join("found/tuned.rs")).unwrap();
+    host_sim(folder.path())
+        .args(["convert", "found/tuned.fll", "--to", "rust"])
+        .assert()
+        .success()
+        .stdout(module);
     let report = report(folder.path(), "found");
     assert_eq!(report["refused"], 0);
     for (fit, count) in report["fits"].as_array().unwrap().iter().zip([180, 45]) {
@@ -376,6 +389,19 @@ fn bad_wishes_are_refused() {
 fn an_interrupted_search_leaves_what_it_has_and_goes_on() {
     let folder = folder();
     let here = folder.path();
+    // So much to judge that the signal comes long before the end.
+    let fan = design("fan.fll");
+    host_sim(here)
+        .args([
+            "eval",
+            fan.to_str().unwrap(),
+            "--grid",
+            "150",
+            "--csv",
+            "data.csv",
+        ])
+        .assert()
+        .success();
     let args = "--evaluations 1000000 --sigma 0.5 --validate 0.1 --out stopped";
     let words = FIT.split_whitespace().chain(args.split_whitespace());
     let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("host-sim"))

@@ -12,6 +12,7 @@ mod set;
 mod tables;
 
 pub use format::Format;
+pub use pieces::{ONE_FLANK, TWO_FLANKS, TWO_SIDES, width};
 pub use tables::{Block, Defuzzifier, Input, Number, Output, Rule, Tables};
 
 use super::evaluate::{Evaluation, Evaluator};

@@ -162,6 +162,12 @@ impl Samples {
         [self.low, self.high]
     }
 
+    /// How they lie, `(offset, step, shift)`: with `p` places from the first one, in 2⁻²¹ of a place, the output is
+    /// `low + ((p + offset) · step + 2^(shift − 1)) >> shift`, for who writes the same in another language.
+    pub const fn spacing(&self) -> (u32, u32, u32) {
+        (self.offset, self.step, self.shift)
+    }
+
     /// The output at a place among the samples: 0 is the first, with [`Samples::FRACTION`] fractional bits.
     #[inline]
     pub(super) const fn at(&self, place: u32) -> i32 {

@@ -1,9 +1,13 @@
 //! `host-sim fuzzy convert`
 
 use super::From;
-use crate::cli::{BadInput, print, put};
+use crate::cli::{BadInput, check_folder, print, put, put_all};
+use anyhow::Context;
 use clap::{Args, ValueEnum};
+use host_sim::fuzzy::check::bounds;
+use host_sim::fuzzy::emit::{self, Design, rust};
 use host_sim::fuzzy::files::{adapt, fcl, fll, load, writing::WriteError};
+use host_sim::fuzzy::lower::lower;
 use host_sim::fuzzy::model::System;
 use std::path::{Path, PathBuf};
 
@@ -15,15 +19,22 @@ pub struct ConvertArguments {
     /// What to write.
     #[arg(long, value_enum)]
     to: To,
-    /// Where to write it; without it, to standard output.
+    /// Where to write it; without it, to standard output. C are two files: NAME.c, with NAME.h beside it, or a folder for
+    /// both.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// The design file's format, whatever its extension says.
     #[arg(long, value_enum)]
     from: Option<From>,
-    /// What the target cannot say exactly becomes the nearest that it can say; each change is named.
+    /// What the target cannot say exactly becomes the nearest that it can say; each change is named. For fll and fcl.
     #[arg(long)]
     adapt: bool,
+    /// Which part of the library evaluates a Rust module.
+    #[arg(long, value_enum)]
+    route: Option<Route>,
+    /// What the Rust module or the C files call the controller; without it, the design's name, or its file's.
+    #[arg(long)]
+    name: Option<String>,
 }
 
 /// What can be written.
@@ -33,35 +44,167 @@ enum To {
     Fll,
     /// IEC 61131-7.
     Fcl,
+    /// A const module for the library.
+    Rust,
+    /// A C99 header and source that need nothing else.
+    C,
 }
 
-impl To {
-    fn write(self, system: &System) -> Result<String, WriteError> {
-        match self {
-            Self::Fll => fll::write(system),
-            Self::Fcl => fcl::write(system),
-        }
-    }
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Route {
+    /// The fast one where the design is what it takes.
+    Auto,
+    /// Two inputs divided between peaks, a complete table of constants: four rules an evaluation.
+    Fast,
+    /// Any design: every rule in every evaluation.
+    General,
+}
 
-    fn adapt(self, system: &mut System) -> Vec<String> {
+impl Route {
+    fn route(self) -> rust::Route {
         match self {
-            Self::Fll => adapt::to_fll(system),
-            Self::Fcl => adapt::to_fcl(system),
+            Self::Auto => rust::Route::Auto,
+            Self::Fast => rust::Route::Fast,
+            Self::General => rust::Route::General,
         }
     }
 }
 
 pub fn execute(arguments: &ConvertArguments) -> anyhow::Result<()> {
-    let mut system = load(&arguments.file, arguments.from.map(From::format))?;
+    check(arguments)?;
+    let system = load(&arguments.file, arguments.from.map(From::format))?;
+    match arguments.to {
+        To::Fll => design(arguments, system, adapt::to_fll, fll::write),
+        To::Fcl => design(arguments, system, adapt::to_fcl, fcl::write),
+        To::Rust | To::C => code(arguments, &system),
+    }
+}
+
+/// Refuses what does not go together.
+fn check(arguments: &ConvertArguments) -> Result<(), BadInput> {
+    let refused = |what: &str, with: &str| {
+        Err(BadInput(format!(
+            "{what} is of no use here; allowed with {with}"
+        )))
+    };
+    let is_code = matches!(arguments.to, To::Rust | To::C);
+    if arguments.route.is_some() && arguments.to != To::Rust {
+        return refused("--route", "--to rust");
+    }
+    if arguments.name.is_some() && !is_code {
+        return refused("--name", "--to rust or --to c");
+    }
+    if arguments.adapt && is_code {
+        return refused("--adapt", "--to fll or --to fcl");
+    }
+    match &arguments.out {
+        None if arguments.to == To::C => Err(BadInput(
+            "--to c writes two files; --out says where: NAME.c, or a folder for both".into(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Writes it as a design file again.
+fn design(
+    arguments: &ConvertArguments,
+    mut system: System,
+    adapt: fn(&mut System) -> Vec<String>,
+    write: fn(&System) -> Result<String, WriteError>,
+) -> anyhow::Result<()> {
     if arguments.adapt {
-        for change in arguments.to.adapt(&mut system) {
+        for change in adapt(&mut system) {
             eprintln!("note: {change}");
         }
     }
-    let text = arguments
-        .to
-        .write(&system)
-        .map_err(|error| refused(&arguments.file, &error, arguments.adapt))?;
+    let text = write(&system).map_err(|error| refused(&arguments.file, &error, arguments.adapt))?;
+    written(arguments, text)
+}
+
+/// Writes it as code.
+fn code(arguments: &ConvertArguments, system: &System) -> anyhow::Result<()> {
+    let file = arguments.file.display();
+    let lowered = lower(system).map_err(|error| BadInput(format!("{file}: {error}")))?;
+    let stem = arguments
+        .file
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let design = Design {
+        system,
+        lowered: &lowered,
+        name: match &arguments.name {
+            Some(name) => name,
+            None if system.name.is_empty() => &stem,
+            None => &system.name,
+        },
+        command: &command(arguments),
+        bounds: Some(&bounds(system, &lowered)),
+    };
+    if arguments.to == To::C {
+        return c(arguments, &design);
+    }
+    let route = arguments.route.unwrap_or(Route::Auto).route();
+    let text = rust::write(&design, route).map_err(|why| {
+        BadInput(format!(
+            "{file}: --route fast does not fit: {why}; allowed is --route general"
+        ))
+    })?;
+    written(arguments, text)
+}
+
+/// The two files of C.
+fn c(arguments: &ConvertArguments, design: &Design<'_>) -> anyhow::Result<()> {
+    let out = arguments.out.as_deref().unwrap_or(Path::new("."));
+    let source = match out.extension() {
+        Some(extension) if extension == "c" && !out.is_dir() => out.to_owned(),
+        _ => {
+            check_folder(out)?;
+            out.join(emit::c::file_stem(design.name))
+                .with_extension("c")
+        }
+    };
+    let header = source.with_extension("h");
+    let included = header.file_name().unwrap_or_default().to_string_lossy();
+    let files = emit::c::write(design, &included);
+    if source.parent() == Some(out) {
+        std::fs::create_dir_all(out)
+            .with_context(|| format!("{}: cannot be made", out.display()))?;
+    }
+    put_all(&[
+        (&header, files.header.as_bytes()),
+        (&source, files.source.as_bytes()),
+    ])
+}
+
+/// The command without folders: what it makes is the same wherever it ran.
+fn command(arguments: &ConvertArguments) -> String {
+    let name = arguments
+        .file
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let mut command = format!("host-sim fuzzy convert {name} --to {}", said(arguments.to));
+    for (option, value) in [
+        ("from", arguments.from.map(said)),
+        ("route", arguments.route.map(said)),
+        ("name", arguments.name.clone()),
+    ] {
+        if let Some(value) = value {
+            command += &format!(" --{option} {value}");
+        }
+    }
+    command
+}
+
+/// As it is said on the command line.
+fn said(value: impl ValueEnum) -> String {
+    value
+        .to_possible_value()
+        .map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+fn written(arguments: &ConvertArguments, text: String) -> anyhow::Result<()> {
     match &arguments.out {
         Some(file) => put(file, text.as_bytes()),
         None => print(text),

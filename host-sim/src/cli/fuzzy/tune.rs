@@ -39,7 +39,7 @@ plus 0.1 · time, in multiples of what the path takes at top speed; plus 10 a co
 The design is the follower's (inputs phi and d, outputs speed and deflection, 25 rules: see designs/fine.fll); its quick \
 route reads even terms, so only the outputs move.
 
-Files in DIR: tuned.fll or tuned.fcl, report.json, memberships.svg and .png (before and after), state.json (after every \
+Files in DIR: tuned.fll or tuned.fcl, tuned.rs (as convert makes it of that), report.json, memberships.svg and .png (before and after), state.json (after every \
 generation; --resume goes on from it: same result as without the break).
 
 Exit code: 0; 1 if something cannot be written; 2 if the input is at fault; 130 if interrupted (Ctrl-C: the state and the \
@@ -152,7 +152,11 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         .map_err(bad)?;
     bar.finish_and_clear();
     let report = Report::new(&design, &goal, &movable, &outcome)?;
-    written.write(out, &design, &outcome.best.system, &report)?;
+    let mut how = command(arguments);
+    if outcome.stop == Stop::Interrupted {
+        how += &format!(" (interrupted after {} candidates)", outcome.evaluations);
+    }
+    written.write(out, &design, &outcome.best.system, &report, &how)?;
     print(&report)?;
     print(format_args!("written: {}\n", out.display()))?;
     if outcome.stop == Stop::Interrupted {
@@ -160,6 +164,41 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         return Err(Interrupted(how).into());
     }
     Ok(())
+}
+
+/// The command on one line, without folders and line breaks. Whether it was resumed makes no difference.
+fn command(arguments: &TuneArguments) -> String {
+    let name = |path: &Path| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let list = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
+    let driving = !arguments.scenario.is_empty();
+    let mut command = format!("host-sim fuzzy tune {}", name(&arguments.design.file));
+    for (option, value) in [
+        ("data", arguments.data.as_deref().map(name)),
+        ("ignore", list(&arguments.ignore)),
+        (
+            "validate",
+            (arguments.validate > 0.0).then(|| arguments.validate.to_string()),
+        ),
+        ("scenario", list(&arguments.scenario)),
+        ("seeds", driving.then(|| arguments.seeds.to_string())),
+        ("only", list(&arguments.only)),
+        ("fix", list(&arguments.fix)),
+        ("seed", Some(arguments.seed.to_string())),
+        ("sigma", Some(arguments.sigma.to_string())),
+        ("evaluations", Some(arguments.evaluations.to_string())),
+    ] {
+        if let Some(value) = value {
+            let value = shown(&value);
+            let quote = if value.contains(' ') { "'" } else { "" };
+            command += &format!(" --{option} {quote}{value}{quote}");
+        }
+    }
+    command
 }
 
 /// What the user can mend is bad input.

@@ -56,7 +56,7 @@ pub fn pieces(shape: &Shape, format: Format) -> Vec<Piece> {
 }
 
 /// A width in steps, not zero, as the engine's curves take it.
-fn width(width: f64, format: Format) -> i64 {
+pub fn width(width: f64, format: Format) -> i64 {
     const MOST: f64 = 1_099_511_627_776.0;
     let steps = format.steps(width).round().clamp(-MOST, MOST) as i64;
     match steps {

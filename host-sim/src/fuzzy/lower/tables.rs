@@ -496,3 +496,15 @@ fn number(
         constant: format.nearest(constant),
     })
 }
+
+impl Defuzzifier {
+    /// The names of its terms.
+    pub fn names(&self) -> Vec<&str> {
+        match self {
+            Self::WeightedAverage { terms, .. } => {
+                terms.iter().map(|(name, _)| &name[..]).collect()
+            }
+            Self::Centroid { terms, .. } => terms.iter().map(|(name, _)| &name[..]).collect(),
+        }
+    }
+}
