@@ -14,7 +14,9 @@ use crate::fuzzy::tune::Objective;
 use crate::metrics::Metrics;
 use crate::run::{RunError, simulate_with};
 use crate::scenario::Scenario;
+use crate::si;
 use fuzzypilot::signals::Decision;
+use fuzzypilot::tables::fine::FineTwin;
 use serde::Serialize;
 
 /// Scenarios that a follower's design drives, each with the seeds 1 to `seeds`.
@@ -36,6 +38,8 @@ pub struct Drive {
     pub cross_track_rms_m: f64,
     /// Mean time, s.
     pub time_s: f64,
+    /// Mean change of the yaw rate from tick to tick, as a share of what the robot can.
+    pub yaw_effort: f64,
     /// Collisions of all runs.
     pub collisions: u64,
     /// Runs that did not reach the path's end.
@@ -44,22 +48,65 @@ pub struct Drive {
 
 /// Weight of the time, as a multiple of what the path takes at top speed, against a robot radius of error.
 const TIME: f64 = 0.1;
+/// Weight of the yaw effort: a robot that shakes at its limit is as bad as one a robot radius off the path. Without it a
+/// search gladly turns small errors into hard switching.
+const EFFORT: f64 = 1.0;
 /// Weight of a collision, and of a run that does not reach the end.
 const FAILURE: f64 = 10.0;
 
 impl Drive {
     /// A run's cost: RMS cross-track error in robot radii + 0.1 · time in multiples of the path's length at top speed
-    /// + 10 a collision + 10 if the end is not reached.
-    fn cost_of(scenario: &Scenario, rms: f64, time: f64, collisions: u64, missed: bool) -> f64 {
+    /// + yaw effort + 10 a collision + 10 if the end is not reached.
+    fn cost_of(run: &Run, scenario: &Scenario) -> f64 {
         let laps = if scenario.path.closed {
             f64::from(scenario.laps.max(1))
         } else {
             1.0
         };
         let quickest = laps * scenario.path.track().length() / scenario.robot.speed;
-        rms / scenario.robot.radius
-            + TIME * time / quickest.max(scenario.robot.period)
-            + FAILURE * (collisions as f64 + f64::from(u8::from(missed)))
+        let failures = run.collisions as f64 + f64::from(u8::from(run.missed));
+        run.rms / scenario.robot.radius
+            + TIME * run.time / quickest.max(scenario.robot.period)
+            + EFFORT * run.effort
+            + FAILURE * failures
+    }
+}
+
+/// What one run gave.
+#[derive(Clone, Copy, Debug, Default)]
+struct Run {
+    rms: f64,
+    time: f64,
+    effort: f64,
+    collisions: u64,
+    missed: bool,
+}
+
+impl Run {
+    fn new(scenario: &Scenario, seed: u64, tables: &'static FineTwin) -> Result<Self, RunError> {
+        let mut metrics = Metrics::new(scenario, seed);
+        let (mut squares, mut following) = (0.0, 0_u32);
+        let (mut turned, mut last, mut ticks) = (0.0, 0.0, 0_u32);
+        let ending = simulate_with(scenario, seed, tables, &mut |step| {
+            metrics.observe(&step);
+            let rate = si::from_rate(step.record.twist.angular);
+            turned += (rate - last).abs();
+            last = rate;
+            ticks += 1;
+            if step.record.decision == Decision::Follow {
+                squares += step.cross_track * step.cross_track;
+                following += 1;
+            }
+        })?;
+        let summary = metrics.finish(ending);
+        let most = scenario.robot.yaw_acceleration * scenario.robot.period;
+        Ok(Self {
+            rms: (squares / f64::from(following.max(1))).sqrt(),
+            time: summary.sim_time_s,
+            effort: turned / (most * f64::from(ticks.max(1))),
+            collisions: summary.collisions,
+            missed: !summary.reached_end,
+        })
     }
 }
 
@@ -72,39 +119,21 @@ impl Driving<'_> {
     pub fn drive(&self, design: &System) -> Result<Vec<Drive>, DrivingError> {
         let tables = Box::leak(Box::new(tables(design)?));
         let drives = self.scenarios.iter().map(|scenario| {
-            let mut all = Drive {
-                scenario: scenario.name.clone(),
-                cost: 0.0,
-                cross_track_rms_m: 0.0,
-                time_s: 0.0,
-                collisions: 0,
-                missed: 0,
+            let runs: Vec<Run> = (1..=self.seeds)
+                .map(|seed| Run::new(scenario, seed, tables))
+                .collect::<Result<_, _>>()?;
+            let mean = |of: &dyn Fn(&Run) -> f64| {
+                runs.iter().map(of).sum::<f64>() / runs.len().max(1) as f64
             };
-            for seed in 1..=self.seeds {
-                let mut metrics = Metrics::new(scenario, seed);
-                let (mut squares, mut ticks) = (0.0, 0_u32);
-                let ending = simulate_with(scenario, seed, tables, &mut |step| {
-                    metrics.observe(&step);
-                    if step.record.decision == Decision::Follow {
-                        squares += step.cross_track * step.cross_track;
-                        ticks += 1;
-                    }
-                })?;
-                let summary = metrics.finish(ending);
-                let rms = (squares / f64::from(ticks.max(1))).sqrt();
-                let (time, collisions) = (summary.sim_time_s, summary.collisions);
-                let missed = !summary.reached_end;
-                all.cost += Drive::cost_of(scenario, rms, time, collisions, missed);
-                all.cross_track_rms_m += rms;
-                all.time_s += time;
-                all.collisions += collisions;
-                all.missed += u64::from(missed);
-            }
-            let runs = self.seeds.max(1) as f64;
-            all.cost /= runs;
-            all.cross_track_rms_m /= runs;
-            all.time_s /= runs;
-            Ok(all)
+            Ok(Drive {
+                scenario: scenario.name.clone(),
+                cost: mean(&|run| Drive::cost_of(run, scenario)),
+                cross_track_rms_m: mean(&|run| run.rms),
+                time_s: mean(&|run| run.time),
+                yaw_effort: mean(&|run| run.effort),
+                collisions: runs.iter().map(|run| run.collisions).sum(),
+                missed: runs.iter().map(|run| u64::from(run.missed)).sum(),
+            })
         });
         drives.collect()
     }
@@ -168,9 +197,19 @@ mod tests {
     #[test]
     fn a_failure_costs_more_than_any_error_on_the_path() {
         let scenario = load("line").unwrap();
-        let cost =
-            |rms, collisions, missed| Drive::cost_of(&scenario, rms, 60.0, collisions, missed);
-        assert!(cost(0.0, 1, false) > cost(5.0 * scenario.robot.radius, 0, false));
-        assert!(cost(0.0, 0, true) > cost(0.0, 0, false) + 9.0);
+        let cost = |change: fn(&mut Run)| {
+            let mut run = Run {
+                time: 60.0,
+                ..Run::default()
+            };
+            change(&mut run);
+            Drive::cost_of(&run, &scenario)
+        };
+        let good = cost(|_| {});
+        assert!(cost(|run| run.collisions = 1) > good + 9.0);
+        assert!(cost(|run| run.missed = true) > good + 9.0);
+        assert!(cost(|run| run.rms = 0.1) > good + 0.1);
+        assert!(cost(|run| run.effort = 0.5) > good + 0.1);
+        assert!(cost(|run| run.time = 120.0) > good + 0.1);
     }
 }

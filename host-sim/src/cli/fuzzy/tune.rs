@@ -35,7 +35,8 @@ Cost with --data: root of the mean square of (output − data) / range of the ou
 point.
 
 Cost with --scenario: the mean over all runs of: RMS cross-track error of all ticks that follow the path, in robot radii; \
-plus 0.1 · time, in multiples of what the path takes at top speed; plus 10 a collision; plus 10 if the end is not reached. \
+plus 0.1 · time, in multiples of what the path takes at top speed; plus the mean change of the yaw rate from tick to \
+tick, as a share of what the robot can; plus 10 a collision; plus 10 if the end is not reached. \
 The design is the follower's (inputs phi and d, outputs speed and deflection, 25 rules: see designs/fine.fll); its quick \
 route reads even terms, so only the outputs move.
 

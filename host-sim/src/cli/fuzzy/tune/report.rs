@@ -211,6 +211,7 @@ impl Report {
             "cost",
             "RMS m",
             "time s",
+            "yaw effort",
             "collisions",
             "end missed",
         ]);
@@ -222,6 +223,7 @@ impl Report {
                     right(format!("{:.4}", drive.cost)),
                     right(format!("{:.4}", drive.cross_track_rms_m)),
                     right(format!("{:.2}", drive.time_s)),
+                    right(format!("{:.3}", drive.yaw_effort)),
                     right(drive.collisions),
                     right(drive.missed),
                 ]);
