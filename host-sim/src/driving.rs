@@ -32,7 +32,8 @@ pub struct Driving<'a> {
 pub struct Drive {
     /// The scenario.
     pub scenario: String,
-    /// The mean of the runs' [costs](Self::cost_of).
+    /// The mean of the runs' costs: RMS cross-track error in robot radii + 0.1 · time in multiples of the path's length at
+    /// top speed + yaw effort + 10 a collision + 10 if the end is not reached.
     pub cost: f64,
     /// Mean of the true cross-track error's root mean square over all ticks that follow the path, m.
     pub cross_track_rms_m: f64,
@@ -55,8 +56,7 @@ const EFFORT: f64 = 1.0;
 const FAILURE: f64 = 10.0;
 
 impl Drive {
-    /// A run's cost: RMS cross-track error in robot radii + 0.1 · time in multiples of the path's length at top speed
-    /// + yaw effort + 10 a collision + 10 if the end is not reached.
+    /// A run's cost, as [`Self::cost`] says.
     fn cost_of(run: &Run, scenario: &Scenario) -> f64 {
         let laps = if scenario.path.closed {
             f64::from(scenario.laps.max(1))
