@@ -67,9 +67,15 @@ pub struct Robot<const N: usize> {
 impl<const N: usize> Robot<N> {
     /// A robot at rest at `start` (world frame), at the beginning of its path. Pass [`Params::checked`] settings.
     pub const fn new(params: Params<N>, start: Pose) -> Self {
+        let fine = FineController::new(&params.follower, &params.limits);
+        Self::with_fine(params, fine, start)
+    }
+
+    /// Like [`Robot::new`] with a fine controller of one's own, until [`Robot::restart`] takes the settings' again.
+    pub const fn with_fine(params: Params<N>, fine: FineController, start: Pose) -> Self {
         Self {
             localiser: Localiser::new(&params.body, start),
-            fine: FineController::new(&params.follower, &params.limits),
+            fine,
             params,
             readings: [RangeReading::NEVER_SEEN; N],
             sensed: Sensed::new(),

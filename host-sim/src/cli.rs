@@ -55,7 +55,7 @@ enum Command {
     Errata(errata::ErrataArguments),
     /// Run a scenario with the tick on a robot: its firmware in QEMU, or a board on a serial port.
     Hil(hil::HilArguments),
-    /// Read fuzzy systems from design files (FuzzyLite, IEC 61131-7, MATLAB); no robot is needed.
+    /// Read, check, convert and tune fuzzy systems from design files (FuzzyLite, IEC 61131-7, MATLAB); no robot is needed.
     Fuzzy(fuzzy::FuzzyArguments),
     /// Measure ticks per second of the library alone and of the whole simulation, on one core.
     BenchTick(bench::BenchArguments),
@@ -82,12 +82,18 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
 #[error("{0}")]
 pub struct BadInput(pub String);
 
+/// Told to stop before it was done.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted; {0}")]
+pub struct Interrupted(pub String);
+
 /// What the program ends with: 2 if the user's input was at fault, 3 if a robot at the other end of a link was.
 pub fn exit_code(error: &anyhow::Error) -> u8 {
     match error.downcast_ref::<Outage>() {
         // As a shell has it.
         Some(Outage::Interrupted) => 130,
         Some(_) => 3,
+        None if error.is::<Interrupted>() => 130,
         None if error.is::<BadInput>()
             || error.is::<ReadError>()
             || error.is::<ScenarioError>()

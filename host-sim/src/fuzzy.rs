@@ -11,6 +11,7 @@ pub mod membership;
 pub mod model;
 pub mod picture;
 pub mod random;
+pub mod tune;
 
 #[cfg(test)]
 mod sample;

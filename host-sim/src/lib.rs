@@ -2,8 +2,10 @@
 //!
 //! A [`scenario`] says what is driven where; [`run`] closes the loop of [`plant`], [`sensors`] and the library's own
 //! `Robot::tick`, or of a robot's behind a link ([`hil`]); [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
+//! [`fuzzy`] is for fuzzy systems without a robot; [`driving`] lets one of them drive it.
 
 pub mod control;
+pub mod driving;
 pub mod fuzzy;
 pub mod hil;
 pub mod metrics;

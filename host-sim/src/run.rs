@@ -8,12 +8,14 @@ use crate::scenario::{PathForm, Scenario};
 use crate::sensors::{SimDrive, SimEncoders, SimRanges};
 use crate::si;
 use crate::track::{Piece, Track};
+use fuzzypilot::behaviour::fine::FineController;
 use fuzzypilot::geometry::Point;
 use fuzzypilot::guide::{Path, PathError, Segment, Waypoint};
 use fuzzypilot::link::message::Cause;
 use fuzzypilot::params::{ParamError, Params};
 use fuzzypilot::ports::{Fault, Ports, RangeReading, WheelCounts, WheelEncoders};
 use fuzzypilot::signals::{Decision, StopReason, TickRecord};
+use fuzzypilot::tables::fine::FineTwin;
 use fuzzypilot::tick::Robot;
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -176,23 +178,36 @@ pub fn simulate(
     seed: u64,
     observe: &mut dyn FnMut(Step<'_>),
 ) -> Result<Ending, RunError> {
+    let tables = scenario.control.fine_set(scenario.robot.preset).twin();
+    simulate_with(scenario, seed, tables, observe)
+}
+
+/// Like [`simulate`] with these fine tables instead of the scenario's.
+pub fn simulate_with(
+    scenario: &Scenario,
+    seed: u64,
+    tables: &'static FineTwin,
+    observe: &mut dyn FnMut(Step<'_>),
+) -> Result<Ending, RunError> {
     match scenario.sensors.count {
-        8 => in_process::<8>(scenario, seed, observe),
-        16 => in_process::<16>(scenario, seed, observe),
-        32 => in_process::<32>(scenario, seed, observe),
-        _ => in_process::<64>(scenario, seed, observe),
+        8 => in_process::<8>(scenario, seed, tables, observe),
+        16 => in_process::<16>(scenario, seed, tables, observe),
+        32 => in_process::<32>(scenario, seed, tables, observe),
+        _ => in_process::<64>(scenario, seed, tables, observe),
     }
 }
 
 fn in_process<const N: usize>(
     scenario: &Scenario,
     seed: u64,
+    tables: &'static FineTwin,
     observe: &mut dyn FnMut(Step<'_>),
 ) -> Result<Ending, RunError> {
     let params: Params<N> = params(scenario)?;
     let owned = OwnedPath::new(scenario);
+    let fine = FineController::of(tables, &params.follower, &params.limits);
     let mut controller = InProcess {
-        robot: Robot::new(params.clone(), si::pose(scenario.start)),
+        robot: Robot::with_fine(params.clone(), fine, si::pose(scenario.start)),
         path: owned.view()?,
     };
     let driven = drive(scenario, seed, &params, &mut controller, &mut |period| {

@@ -38,6 +38,11 @@ impl FineController {
     ///
     /// A scale is kept to 16 significant bits, d's to a quarter of its own step.
     pub const fn new(follower: &Follower, limits: &Limits) -> Self {
+        Self::of(follower.tables.twin(), follower, limits)
+    }
+
+    /// Like [`new`](Self::new) with tables of one's own instead of the settings'.
+    pub const fn of(twin: &'static FineTwin, follower: &Follower, limits: &Limits) -> Self {
         // One axis unit is a quarter of d's axis, 2^30 of its 2^32 steps: 2^14 a count of 2^-16.
         let units = follower.distance_scale.to_bits();
         let distance = if units > 0 {
@@ -61,7 +66,7 @@ impl FineController {
         // π in Q30 by 180°.
         let radians = (3_373_259_426, 180 << (Deflection::FRAC_NBITS + extra + 30));
         Self {
-            twin: follower.tables.twin(),
+            twin,
             distance: InputScale::new(distance),
             speed,
             yaw_rate: OutputScale::new(rate * radians.0, radians.1),

@@ -1,4 +1,4 @@
-//! `host-sim fuzzy`: fuzzy systems from design files, without a robot.
+//! `host-sim fuzzy`: fuzzy systems from design files; only tuning may ask for a robot, the simulated one.
 
 mod check;
 mod convert;
@@ -7,6 +7,7 @@ mod eval;
 mod named;
 mod surface;
 mod table;
+mod tune;
 
 use clap::{Args, Subcommand, ValueEnum};
 use host_sim::fuzzy::files::Format;
@@ -29,6 +30,8 @@ enum Command {
     Eval(eval::EvalArguments),
     /// Draw the membership functions, and every output over two inputs.
     Surface(surface::SurfaceArguments),
+    /// Fit peaks, widths and consequents to data, or to how the robot drives with them.
+    Tune(tune::TuneArguments),
 }
 
 /// Which design.
@@ -70,5 +73,6 @@ pub fn execute(arguments: &FuzzyArguments) -> anyhow::Result<()> {
         Command::Check(arguments) => check::execute(arguments),
         Command::Eval(arguments) => eval::execute(arguments),
         Command::Surface(arguments) => surface::execute(arguments),
+        Command::Tune(arguments) => tune::execute(arguments),
     }
 }

@@ -211,7 +211,8 @@ fn written(arguments: &ConvertArguments, text: String) -> anyhow::Result<()> {
     }
 }
 
-fn refused(file: &Path, error: &WriteError, adapted: bool) -> BadInput {
+/// What a writer refuses, in the user's file.
+pub(super) fn refused(file: &Path, error: &WriteError, adapted: bool) -> BadInput {
     let line = match error.place.line {
         0 => String::new(),
         line => format!(":{line}:{}", error.place.column),

@@ -1,0 +1,283 @@
+//! `host-sim fuzzy tune`
+
+mod goal;
+mod report;
+mod result;
+
+use super::convert::refused;
+use super::design::Design;
+use crate::cli::{BadInput, Interrupted, check_folder, number, print, put, whole};
+use anyhow::Context;
+use clap::{ArgGroup, Args};
+use goal::Goal;
+use host_sim::fuzzy::model::System;
+use host_sim::fuzzy::tune::state::{Question, State};
+use host_sim::fuzzy::tune::{
+    Movable, Progress, Search, SearchError, Selection, Settings, Stop, Variable,
+};
+use host_sim::scenario::shown;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use report::Report;
+use result::Written;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+#[derive(Args)]
+#[command(
+    group = ArgGroup::new("goal").required(true).args(["data", "scenario"]),
+    after_help = "\
+What moves: peaks, feet and middles of membership functions inside their range (those at one value together), widths of \
+curved ones (half to double), constants within their range, numbers of order-1 terms. They keep their order and a least \
+distance. Terms, rules, weights and ranges stay.
+
+Cost with --data: root of the mean square of (output − data) / range of the output, over all rows and outputs, in fixed \
+point.
+
+Cost with --scenario: the mean over all runs of: RMS cross-track error of all ticks that follow the path, in robot radii; \
+plus 0.1 · time, in multiples of what the path takes at top speed; plus the mean change of the yaw rate from tick to \
+tick, as a share of what the robot can; plus 10 a collision; plus 10 if the end is not reached. \
+The design is the follower's (inputs phi and d, outputs speed and deflection, 25 rules: see designs/fine.fll); its quick \
+route reads even terms, so only the outputs move.
+
+Files in DIR: tuned.fll or tuned.fcl, tuned.rs (as convert makes it of that), report.json, memberships.svg and .png (before and after), state.json (after every \
+generation; --resume goes on from it: same result as without the break).
+
+Exit code: 0; 1 if something cannot be written; 2 if the input is at fault; 130 if interrupted (Ctrl-C: the state and the \
+best so far are written)."
+)]
+pub struct TuneArguments {
+    #[command(flatten)]
+    design: super::DesignArguments,
+    /// Rows to fit: a CSV file with a line of names, a column for every input and for one output or more.
+    #[arg(long, value_name = "FILE")]
+    data: Option<PathBuf>,
+    /// Scenarios to drive well, built-in or TOML files.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    scenario: Vec<String>,
+    /// Seeds 1 to N of every scenario.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "scenario", conflicts_with = "data", value_parser = whole(1, 1000), allow_hyphen_values = true)]
+    seeds: u64,
+    /// Columns of the data that are not looked at.
+    #[arg(
+        long,
+        value_name = "NAME,…",
+        value_delimiter = ',',
+        conflicts_with = "scenario"
+    )]
+    ignore: Vec<String>,
+    /// Share of the rows that is only judged by, not fitted to; picked at random from the seed.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, conflicts_with = "scenario", value_parser = number(0.0, 0.9), allow_hyphen_values = true)]
+    validate: f64,
+    /// Move only these: VARIABLE or VARIABLE.TERM.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    only: Vec<String>,
+    /// Do not move these: VARIABLE or VARIABLE.TERM. What they share with other terms stays, too.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    fix: Vec<String>,
+    /// Seed of everything random. The result is the same on any number of cores.
+    #[arg(long, default_value_t = 1, value_parser = whole(0, u64::MAX), allow_hyphen_values = true)]
+    seed: u64,
+    /// First step, as a share of a variable's range.
+    #[arg(long, default_value_t = 0.1, value_parser = number(1e-6, 1.0), allow_hyphen_values = true)]
+    sigma: f64,
+    /// Most candidates to judge.
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = whole(1, 10_000_000), allow_hyphen_values = true)]
+    evaluations: u64,
+    /// A state.json to go on from; everything but --evaluations and --out has to be as it was.
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "out/tune")]
+    out: PathBuf,
+}
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
+    let design = Design::load(&arguments.design)?;
+    let system = &design.system;
+    if let Err(why) = &design.fixed {
+        let file = arguments.design.file.display();
+        return Err(BadInput(format!("{file}: no fixed point: {why}")).into());
+    }
+    let written = Written::of(&arguments.design);
+    written
+        .text(system)
+        .map_err(|error| refused(&arguments.design.file, &error, false))?;
+    let goal = Goal::load(arguments, system)?;
+    let mut selection = Selection {
+        only: named(system, "--only", &arguments.only)?,
+        fix: named(system, "--fix", &arguments.fix)?,
+    };
+    if goal.only_outputs() {
+        let inputs = (0..system.inputs.len()).map(|index| (Variable::Input(index), None));
+        selection.fix.extend(inputs);
+    }
+    let question = Question {
+        design: Question::fingerprint(&format!("{:?}", system.clone().without_places())),
+        objective: goal.fingerprint(),
+        moving: Question::fingerprint(&format!("{selection:?}")),
+        seed: arguments.seed,
+        sigma: arguments.sigma,
+    };
+    let known = match &arguments.resume {
+        Some(file) => {
+            State::load(file, &question).map_err(|e| BadInput(format!("--resume {e}")))?
+        }
+        None => Default::default(),
+    };
+    let out = &arguments.out;
+    check_folder(out)?;
+    ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed))
+        .context("signals: cannot be handled")?;
+    let movable = Movable::new(system, &selection);
+    let search = Search {
+        movable: &movable,
+        objective: goal.objective(),
+        settings: Settings {
+            seed: arguments.seed,
+            sigma: arguments.sigma,
+            evaluations: arguments.evaluations as usize,
+        },
+        known,
+        stop: &INTERRUPTED,
+    };
+    let state = out.join("state.json");
+    let bar = bar(arguments.evaluations);
+    let outcome = search
+        .run(&mut |progress| {
+            show(&bar, &progress);
+            remember(&state, &question, &progress)
+        })
+        .map_err(bad)?;
+    bar.finish_and_clear();
+    let report = Report::new(&design, &goal, &movable, &outcome)?;
+    let mut how = command(arguments);
+    if outcome.stop == Stop::Interrupted {
+        how += &format!(" (interrupted after {} candidates)", outcome.evaluations);
+    }
+    written.write(out, &design, &outcome.best.system, &report, &how)?;
+    print(&report)?;
+    print(format_args!("written: {}\n", out.display()))?;
+    if outcome.stop == Stop::Interrupted {
+        let how = format!("--resume {} goes on", state.display());
+        return Err(Interrupted(how).into());
+    }
+    Ok(())
+}
+
+/// The command on one line, without folders and line breaks. Whether it was resumed makes no difference.
+fn command(arguments: &TuneArguments) -> String {
+    let name = |path: &Path| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let list = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
+    let driving = !arguments.scenario.is_empty();
+    let mut command = format!("host-sim fuzzy tune {}", name(&arguments.design.file));
+    for (option, value) in [
+        ("data", arguments.data.as_deref().map(name)),
+        ("ignore", list(&arguments.ignore)),
+        (
+            "validate",
+            (arguments.validate > 0.0).then(|| arguments.validate.to_string()),
+        ),
+        ("scenario", list(&arguments.scenario)),
+        ("seeds", driving.then(|| arguments.seeds.to_string())),
+        ("only", list(&arguments.only)),
+        ("fix", list(&arguments.fix)),
+        ("seed", Some(arguments.seed.to_string())),
+        ("sigma", Some(arguments.sigma.to_string())),
+        ("evaluations", Some(arguments.evaluations.to_string())),
+    ] {
+        if let Some(value) = value {
+            let value = shown(&value);
+            let quote = if value.contains(' ') { "'" } else { "" };
+            command += &format!(" --{option} {quote}{value}{quote}");
+        }
+    }
+    command
+}
+
+/// What the user can mend is bad input.
+fn bad(error: SearchError) -> anyhow::Error {
+    match error {
+        SearchError::Observer(error) => error,
+        other => BadInput(other.to_string()).into(),
+    }
+}
+
+fn bar(evaluations: u64) -> ProgressBar {
+    let target = if std::io::stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
+    let style = ProgressStyle::with_template("{bar:30} {pos} of at most {len}, {msg}, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::with_draw_target(Some(evaluations), target).with_style(style)
+}
+
+fn show(bar: &ProgressBar, progress: &Progress<'_>) {
+    bar.set_position(progress.evaluations as u64);
+    bar.set_message(format!(
+        "best cost {:.4e}, step {:.1e}",
+        progress.best, progress.sigma
+    ));
+}
+
+/// Writes the state, whole or not at all.
+fn remember(file: &Path, question: &Question, progress: &Progress<'_>) -> anyhow::Result<()> {
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("{}: cannot be created", folder.display()))?;
+    }
+    let state = State::new(question.clone(), progress.judged);
+    put(file, state.text()?.as_bytes())
+}
+
+/// Variables and terms by their names.
+fn named(
+    system: &System,
+    flag: &str,
+    texts: &[String],
+) -> Result<Vec<(Variable, Option<usize>)>, BadInput> {
+    let mut variables: Vec<(&str, Variable, Vec<&str>)> = Vec::new();
+    for (index, input) in system.inputs.iter().enumerate() {
+        let terms = input.terms.iter().map(|term| term.name.as_str());
+        variables.push((&input.name, Variable::Input(index), terms.collect()));
+    }
+    for (index, output) in system.outputs.iter().enumerate() {
+        let terms = output.terms.iter().map(|term| term.name.as_str());
+        variables.push((&output.name, Variable::Output(index), terms.collect()));
+    }
+    let names: Vec<&str> = variables.iter().map(|(name, ..)| *name).collect();
+    let find = |text: &String| {
+        // A name may hold a dot itself.
+        let mut splits = std::iter::once((text.as_str(), None)).chain(
+            text.match_indices('.')
+                .map(|(at, _)| (&text[..at], Some(&text[at + 1..]))),
+        );
+        let found = splits.find_map(|(name, term)| {
+            let (_, variable, terms) = variables.iter().find(|(known, ..)| *known == name)?;
+            match term {
+                None => Some((*variable, None)),
+                Some(term) => {
+                    let index = terms.iter().position(|known| *known == term)?;
+                    Some((*variable, Some(index)))
+                }
+            }
+        });
+        found.ok_or_else(|| {
+            let text = shown(text);
+            let names = names.join(", ");
+            BadInput(format!(
+                "{flag} {text}: no such variable or term; allowed are {names}, alone or with `.` and one of their terms"
+            ))
+        })
+    };
+    texts.iter().map(find).collect()
+}

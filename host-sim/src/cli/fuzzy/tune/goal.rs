@@ -1,0 +1,101 @@
+//! What is tuned for: data, or driving.
+
+use super::TuneArguments;
+use crate::cli::{BadInput, Variants, load};
+use host_sim::driving::{Driving, tables};
+use host_sim::fuzzy::lower::Lowered;
+use host_sim::fuzzy::model::System;
+use host_sim::fuzzy::tune::data::Data;
+use host_sim::fuzzy::tune::state::Question;
+use host_sim::fuzzy::tune::{Fit, Hash, Objective};
+use host_sim::scenario::Scenario;
+
+/// A goal, read and checked.
+pub enum Goal {
+    /// Rows to fit, and rows to be judged by.
+    Data {
+        /// Fitted to.
+        train: Data,
+        /// Only judged by; may have no row.
+        validation: Data,
+        /// Of the file and of how it was split.
+        fingerprint: String,
+    },
+    /// Scenarios to drive.
+    Drive {
+        /// Which.
+        scenarios: Vec<Scenario>,
+        /// Seeds 1 to this.
+        seeds: u64,
+    },
+}
+
+impl Goal {
+    /// Reads what the arguments name.
+    pub fn load(arguments: &TuneArguments, system: &System) -> anyhow::Result<Self> {
+        let Some(file) = &arguments.data else {
+            let scenarios = arguments.scenario.iter();
+            let scenarios = scenarios.map(|name| load(name, &Variants::default()));
+            let file = arguments.design.file.display();
+            tables(system).map_err(|why| BadInput(format!("{file}: {why}")))?;
+            return Ok(Self::Drive {
+                scenarios: scenarios.collect::<Result<_, _>>()?,
+                seeds: arguments.seeds,
+            });
+        };
+        let (data, hash) = Data::load(file, system, &arguments.ignore)
+            .map_err(|error| BadInput(error.to_string()))?;
+        let (train, validation) = data.split(arguments.validate, arguments.seed);
+        if train.rows.is_empty() {
+            return Err(BadInput(format!(
+                "--validate {}: no row is left to fit to; allowed is a smaller share",
+                arguments.validate
+            ))
+            .into());
+        }
+        let how = format!("{} {:?}", arguments.validate, arguments.ignore);
+        Ok(Self::Data {
+            train,
+            validation,
+            fingerprint: format!("{:016x}", hash_of(hash, &how)),
+        })
+    }
+
+    /// Whether inputs have to stay as they are.
+    pub fn only_outputs(&self) -> bool {
+        matches!(self, Self::Drive { .. })
+    }
+
+    /// Of everything that the cost depends on.
+    pub fn fingerprint(&self) -> String {
+        match self {
+            Self::Data { fingerprint, .. } => format!("data {fingerprint}"),
+            Self::Drive { scenarios, seeds } => {
+                let text = Question::fingerprint(&format!("{scenarios:?} {seeds}"));
+                format!("scenarios {text}")
+            }
+        }
+    }
+
+    /// As the search wants it.
+    pub fn objective(&self) -> &dyn Objective {
+        self
+    }
+}
+
+fn hash_of(file: Hash, how: &str) -> u64 {
+    file.and(how.as_bytes()).bits()
+}
+
+impl Objective for Goal {
+    fn cost(&self, system: &System, lowered: &Lowered) -> Option<f64> {
+        match self {
+            Self::Data { train, .. } => Fit(train).cost(system, lowered),
+            Self::Drive { scenarios, seeds } => Driving {
+                scenarios,
+                seeds: *seeds,
+            }
+            .cost(system, lowered),
+        }
+    }
+}
