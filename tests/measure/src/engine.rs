@@ -26,7 +26,7 @@ const BARS: [Bar; 3] = [
     Bar {
         core: "m0",
         instructions: [170, 160, 170],
-        flash: 540,
+        flash: 512,
     },
     Bar {
         core: "rv32",
