@@ -15,6 +15,27 @@
 //! * Everything that can be wrong with a table is checked while it compiles: see [`Partition::new`],
 //!   [`Consequents::new`] and [`RuleTable::new`].
 //!
+//! That is the fast route. [`system`] takes every other kind of rule base.
+//!
+//! # Which route for what
+//!
+//! | | two inputs, whole tables | [`system`]: anything else |
+//! |---|---|---|
+//! | inputs, outputs | 2, any number | 1 to 4, 1 to 255 |
+//! | terms | a Ruspini partition: triangles, shoulders | triangles, trapezoids, shoulders, singletons, points; Gaussians, bells, sigmoids, splines in pieces |
+//! | AND, OR, NOT | min, –, – | min or product, max, one minus the degree |
+//! | rule weights | – | yes |
+//! | conclusions | singletons | singletons, Takagi–Sugeno of order 1, sampled sets |
+//! | defuzzification | height | height, centroid, centre of sums |
+//! | rules that share a conclusion | summed | summed or max-merged |
+//! | work | four rules, whatever the table | every rule, every sample |
+//! | chosen by the type | [`Antecedents`] and [`RuleTable`] | [`system::System`] |
+//!
+//! Both do the same work for every input, give the same bits on every machine, cannot panic and are checked while they
+//! compile. **Not supported**: type-2 and intuitionistic sets, hedges (very, somewhat), other norms than these (bounded,
+//! drastic, Einstein, Hamacher), terms higher or lower than one, Takagi–Sugeno of a higher order, Tsukamoto, mean, smallest
+//! or largest of maximum, bisector, chained rule blocks, and more than four inputs.
+//!
 //! # Example: a fan
 //!
 //! ```
@@ -47,6 +68,7 @@ mod product;
 mod reciprocal;
 mod rules;
 mod scale;
+pub mod system;
 mod twin;
 mod weigh;
 

@@ -3,6 +3,7 @@
 mod bench;
 mod errata;
 mod eval;
+mod fuzzy;
 mod hil;
 mod list;
 mod run;
@@ -14,6 +15,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use host_sim::control::{
     AxisName, CoarseName, FineNn, InputName, IntegratorName, LawName, TablesName,
 };
+use host_sim::fuzzy::files::error::ReadError;
 use host_sim::hil::Outage;
 use host_sim::run::RunError;
 use host_sim::scenario::{PathForm, Scenario, ScenarioError};
@@ -53,6 +55,8 @@ enum Command {
     Errata(errata::ErrataArguments),
     /// Run a scenario with the tick on a robot: its firmware in QEMU, or a board on a serial port.
     Hil(hil::HilArguments),
+    /// Read fuzzy systems from design files (FuzzyLite, IEC 61131-7, MATLAB); no robot is needed.
+    Fuzzy(fuzzy::FuzzyArguments),
     /// Measure ticks per second of the library alone and of the whole simulation, on one core.
     BenchTick(bench::BenchArguments),
 }
@@ -68,6 +72,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
         Some(Command::Sweep(arguments)) => sweep::execute(&arguments),
         Some(Command::Errata(arguments)) => errata::execute(&arguments),
         Some(Command::Hil(arguments)) => hil::execute(&arguments),
+        Some(Command::Fuzzy(arguments)) => fuzzy::execute(&arguments),
         Some(Command::BenchTick(arguments)) => bench::execute(&arguments),
     }
 }
@@ -83,7 +88,11 @@ pub fn exit_code(error: &anyhow::Error) -> u8 {
         // As a shell has it.
         Some(Outage::Interrupted) => 130,
         Some(_) => 3,
-        None if error.is::<BadInput>() || error.is::<ScenarioError>() || error.is::<RunError>() => {
+        None if error.is::<BadInput>()
+            || error.is::<ReadError>()
+            || error.is::<ScenarioError>()
+            || error.is::<RunError>() =>
+        {
             2
         }
         None => 1,

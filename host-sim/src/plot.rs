@@ -4,6 +4,9 @@
 //! plotters draws whole pixels only, so everything here is drawn on a canvas `FINE` times larger than the figure
 //! and the document's view box scales it back: curves stay smooth at any zoom.
 
+pub mod axis;
+pub mod curve;
+pub mod membership;
 pub mod raster;
 pub mod run;
 pub mod surface;
@@ -17,9 +20,12 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+pub use axis::Axis;
+pub use curve::curve_svg;
+pub use membership::{Form, TermCurve, Variable, membership_svg};
 pub use raster::png;
 pub use run::run_svg;
-pub use surface::{Axis, SurfaceSpec, membership_svg, surface_svg};
+pub use surface::{SurfaceSpec, surface_svg};
 
 /// Drawing units a pixel of the figure.
 const FINE: f64 = 8.0;
@@ -169,6 +175,36 @@ fn between(from: Point, to: Point, share: f64) -> Point {
         from.0 + (to.0 - from.0) * share,
         from.1 + (to.1 - from.1) * share,
     )
+}
+
+/// Matplotlib's viridis at ninths.
+const VIRIDIS: [(u8, u8, u8); 10] = [
+    (68, 1, 84),
+    (72, 40, 120),
+    (62, 74, 137),
+    (49, 104, 142),
+    (38, 130, 142),
+    (31, 158, 137),
+    (53, 183, 121),
+    (109, 205, 89),
+    (180, 222, 44),
+    (253, 231, 37),
+];
+
+/// The colour of a share of the way from dark to bright.
+fn viridis(share: f64) -> RGBColor {
+    let place = share.clamp(0.0, 1.0) * 9.0;
+    let low = (place.floor() as usize).min(8);
+    let rest = place - low as f64;
+    let (a, b) = (VIRIDIS[low], VIRIDIS[low + 1]);
+    let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * rest).round() as u8;
+    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}
+
+/// Scaled towards black.
+fn shaded(colour: RGBColor, light: f64) -> RGBColor {
+    let dim = |channel: u8| (f64::from(channel) * light.clamp(0.0, 1.0)).round() as u8;
+    RGBColor(dim(colour.0), dim(colour.1), dim(colour.2))
 }
 
 /// Where a text hangs on its point.
@@ -702,5 +738,16 @@ mod tests {
         assert_eq!(names, ["figure.png", "figure.svg"]);
         assert!(write_pair(dir.path(), "broken", "no figure").is_err());
         assert!(!dir.path().join("broken.svg").exists());
+    }
+
+    #[test]
+    fn colours_run_from_dark_to_bright() {
+        let light = |share| {
+            let RGBColor(r, g, b) = viridis(share);
+            0.3 * f64::from(r) + 0.6 * f64::from(g) + 0.1 * f64::from(b)
+        };
+        assert!(
+            (0..20).all(|step| light(f64::from(step) / 20.0) < light(f64::from(step + 1) / 20.0))
+        );
     }
 }

@@ -5,7 +5,7 @@ use clap::Args;
 use fixed::types::I16F16;
 use fuzzypilot::tables::coarse::{self, CoarseSet, SpeedInput};
 use fuzzypilot::tables::fine::{self, FineSet};
-use host_sim::plot::{Axis, SurfaceSpec, membership_svg, surface_svg, write_pair};
+use host_sim::plot::{Axis, SurfaceSpec, Variable, membership_svg, surface_svg, write_pair};
 use host_sim::si;
 use std::path::{Path, PathBuf};
 
@@ -86,7 +86,13 @@ where
 }
 
 fn draw(out: &Path, stem: &str, spec: &SurfaceSpec<'_>) -> anyhow::Result<()> {
-    write_pair(out, &format!("{stem}-memberships"), &membership_svg(spec)?)?;
+    let variables = [
+        Variable::partition(&spec.rows),
+        Variable::partition(&spec.cols),
+        Variable::singletons(&spec.output),
+    ];
+    let memberships = membership_svg(&spec.title, &variables)?;
+    write_pair(out, &format!("{stem}-memberships"), &memberships)?;
     write_pair(out, &format!("{stem}-surface"), &surface_svg(spec)?)
 }
 
@@ -111,10 +117,11 @@ fn fine_pictures(out: &Path, set: FineSet, stem: &str, title: &str) -> anyhow::R
         &format!("{stem}-speed"),
         &SurfaceSpec {
             title: format!("{title}: speed"),
+            note: String::new(),
             rows: rows.clone(),
             cols: cols.clone(),
             output: speed,
-            eval: &|phi, d| tables.evaluate(number(d), number(phi)).speed.to_num(),
+            eval: &|phi, d| Some(tables.evaluate(number(d), number(phi)).speed.to_num()),
         },
     )?;
     let deflection = Axis {
@@ -128,10 +135,11 @@ fn fine_pictures(out: &Path, set: FineSet, stem: &str, title: &str) -> anyhow::R
         &format!("{stem}-deflection"),
         &SurfaceSpec {
             title: format!("{title}: deflection"),
+            note: String::new(),
             rows,
             cols,
             output: deflection,
-            eval: &|phi, d| tables.evaluate(number(d), number(phi)).deflection.to_num(),
+            eval: &|phi, d| Some(tables.evaluate(number(d), number(phi)).deflection.to_num()),
         },
     )
 }
@@ -154,10 +162,11 @@ fn coarse_pictures(out: &Path, set: CoarseSet, stem: &str, title: &str) -> anyho
         &format!("{stem}-deflection"),
         &SurfaceSpec {
             title: format!("{title}: deflection"),
+            note: String::new(),
             rows: rows.clone(),
             cols: cols.clone(),
             output: deflection,
-            eval: &|s, theta| at(s, theta, SpeedInput::Deflection).deflection.to_num(),
+            eval: &|s, theta| Some(at(s, theta, SpeedInput::Deflection).deflection.to_num()),
         },
     )?;
     for (input, name, by) in [
@@ -183,10 +192,11 @@ fn coarse_pictures(out: &Path, set: CoarseSet, stem: &str, title: &str) -> anyho
             &format!("{stem}-{name}"),
             &SurfaceSpec {
                 title: format!("{title}: {by}"),
+                note: String::new(),
                 rows: rows.clone(),
                 cols: cols.clone(),
                 output: speed,
-                eval: &|s, theta| at(s, theta, input).speed.to_num(),
+                eval: &|s, theta| Some(at(s, theta, input).speed.to_num()),
             },
         )?;
     }

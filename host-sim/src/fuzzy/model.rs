@@ -25,6 +25,25 @@ pub struct System {
     pub blocks: Vec<RuleBlock>,
 }
 
+impl System {
+    /// The same with no place anywhere: to compare what several files say.
+    pub fn without_places(mut self) -> Self {
+        let nowhere = Place::default();
+        for input in &mut self.inputs {
+            input.place = nowhere;
+            input.terms.iter_mut().for_each(|t| t.place = nowhere);
+        }
+        for output in &mut self.outputs {
+            output.place = nowhere;
+            output.terms.iter_mut().for_each(|t| t.place = nowhere);
+        }
+        for block in &mut self.blocks {
+            block.rules.iter_mut().for_each(|r| r.place = nowhere);
+        }
+        self
+    }
+}
+
 /// An input variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
@@ -85,7 +104,8 @@ pub enum Shape {
     },
     /// One at this value, zero elsewhere.
     Singleton(f64),
-    /// Straight between points `(x, degree)`, x ascending (equal ones are a step), flat before the first and behind the last.
+    /// Straight between points `(x, degree)`, x ascending (equal ones are a step), flat before the first and behind the last;
+    /// degrees from 0 to 1, two points or more.
     Points(Vec<(f64, f64)>),
     /// exp(−(x − mean)² / 2σ²).
     Gaussian {

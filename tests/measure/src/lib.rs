@@ -15,6 +15,7 @@ pub mod footprint;
 pub mod machine;
 pub mod suite;
 pub mod synthetic;
+pub mod systems;
 pub mod tape;
 
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `cargo bit-exact`, `cargo budgets` and `cargo engine`.
+//! `cargo bit-exact`, `cargo budgets`, `cargo engine` and `cargo systems`.
 
 use anyhow::{Context, bail, ensure};
 use clap::{Args, Parser, Subcommand};
@@ -6,7 +6,7 @@ use comfy_table::{Table, presets::NOTHING};
 use measure::budgets::{Budgets, Measured, readme};
 use measure::counts::{COUNTED, count};
 use measure::machine::{Images, MACHINES, Missing};
-use measure::{clock, digests, engine, exact, footprint, suite};
+use measure::{clock, digests, engine, exact, footprint, suite, systems};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -24,6 +24,8 @@ enum Command {
     BitExact(BitExact),
     /// Count instructions, stack, flash and memory, and compare them with tests/budgets.toml and the README's table.
     Budgets(Write),
+    /// Evaluate general fuzzy systems: the same bits everywhere, the same count of instructions for every input.
+    Systems,
     /// Count one evaluation of the fine controller over a grid, and compare results and costs with what is allowed.
     Engine,
 }
@@ -48,6 +50,7 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::BitExact(arguments) => bit_exact(&arguments),
         Command::Budgets(arguments) => budgets(arguments.write),
+        Command::Systems => systems(),
         Command::Engine => engine::run(),
     };
     match done {
@@ -122,6 +125,28 @@ fn budgets(write: bool) -> anyhow::Result<()> {
         );
     }
     readme(&table, false).context("budgets fit, but")
+}
+
+fn systems() -> anyhow::Result<()> {
+    let images = Images::build()?;
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    table.set_header(["core", "system", "least", "most"]);
+    let mut constant = true;
+    for machine in &MACHINES {
+        for cost in systems::count(machine, &images)? {
+            constant &= cost.least == cost.most;
+            table.add_row([
+                machine.name,
+                cost.system,
+                &cost.least.to_string(),
+                &cost.most.to_string(),
+            ]);
+        }
+    }
+    println!("{table}");
+    ensure!(constant, "an evaluation's count depends on its inputs");
+    Ok(())
 }
 
 /// What was measured, and where the worst was.

@@ -1,0 +1,54 @@
+//! A design as the commands have it: read, and in fixed point if it has such a form.
+
+use super::{DesignArguments, From};
+use host_sim::fuzzy::files::load;
+use host_sim::fuzzy::lower::{Fixed, LowerError, Lowered, lower};
+use host_sim::fuzzy::model::System;
+
+/// A design.
+pub struct Design {
+    /// What it says.
+    pub system: System,
+    /// Its file's name without folder and extension.
+    pub stem: String,
+    /// Its fixed point, or why it has none.
+    pub fixed: Result<Lowered, LowerError>,
+}
+
+impl Design {
+    /// Reads a design file.
+    pub fn load(arguments: &DesignArguments) -> anyhow::Result<Self> {
+        let system = load(&arguments.file, arguments.from.map(From::format))?;
+        let stem = arguments.file.file_stem().unwrap_or_default();
+        Ok(Self {
+            fixed: lower(&system),
+            stem: stem.to_string_lossy().into_owned(),
+            system,
+        })
+    }
+
+    /// Lends its fixed point, opened, or nothing if it has none.
+    pub fn opened<R>(&self, use_it: impl FnOnce(Option<Fixed<'_>>) -> R) -> R {
+        match &self.fixed {
+            Ok(lowered) => lowered.open(|fixed| use_it(Some(fixed))),
+            Err(_) => use_it(None),
+        }
+    }
+
+    /// The system's own name, or its file's.
+    pub fn title(&self) -> String {
+        if self.system.name.is_empty() {
+            self.stem.clone()
+        } else {
+            self.system.name.clone()
+        }
+    }
+
+    /// What to print where fixed point is missing; empty where it is not.
+    pub fn note(&self) -> String {
+        match &self.fixed {
+            Ok(_) => String::new(),
+            Err(why) => format!("no fixed point: {why}\n"),
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! `host-sim fuzzy eval`
+
+use super::design::Design;
+use super::named;
+use super::table::{right, table};
+use crate::cli::{BadInput, print, put, whole};
+use clap::Args;
+use comfy_table::{Cell, Table};
+use host_sim::fuzzy::check::Grid;
+use host_sim::fuzzy::describe;
+use host_sim::fuzzy::evaluate::{Evaluation, Evaluator, Exact, memberships, rules, taken};
+use host_sim::fuzzy::lower::Fixed;
+use host_sim::fuzzy::model::System;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub struct EvalArguments {
+    #[command(flatten)]
+    design: super::DesignArguments,
+    /// An input's value; one for each input (with --grid, inputs that are given are held).
+    #[arg(long = "input", value_name = "NAME=VALUE")]
+    inputs: Vec<String>,
+    /// Evaluate a grid of N values an input, from end to end of its range.
+    #[arg(long, value_name = "N", requires = "csv", value_parser = whole(2, 1_000_000), allow_hyphen_values = true)]
+    grid: Option<u64>,
+    /// Where the grid's values go: inputs, then outputs in f64 and in fixed point; no value is an empty cell.
+    #[arg(long, value_name = "FILE", requires = "grid")]
+    csv: Option<PathBuf>,
+}
+
+/// Most rows of a grid.
+const MOST_ROWS: usize = 2_000_000;
+
+pub fn execute(arguments: &EvalArguments) -> anyhow::Result<()> {
+    let design = Design::load(&arguments.design)?;
+    let values = named::values(&design.system, "--input", &arguments.inputs)?;
+    if let (Some(grid), Some(csv)) = (arguments.grid, &arguments.csv) {
+        return surface(&design, &values, grid as usize, csv);
+    }
+    let missing: Vec<&str> = design
+        .system
+        .inputs
+        .iter()
+        .zip(&values)
+        .filter(|(_, value)| value.is_none())
+        .map(|(input, _)| input.name.as_str())
+        .collect();
+    if !missing.is_empty() {
+        let what = format!(
+            "--input: missing: {}; needed is a value for every input",
+            missing.join(", ")
+        );
+        return Err(BadInput(what).into());
+    }
+    let point: Vec<f64> = values.into_iter().flatten().collect();
+    at_point(&design, &point)
+}
+
+fn at_point(design: &Design, point: &[f64]) -> anyhow::Result<()> {
+    let system = &design.system;
+    let exact = Exact::new(system).evaluate(point);
+    let fixed = design.opened(|fixed| fixed.map(|fixed| fixed.evaluate(point)));
+    print(format_args!(
+        "{} at {}\n",
+        design.title(),
+        describe::point(system, point)
+    ))?;
+    print(format_args!("{}\n", inputs(design, point)))?;
+    print(format_args!(
+        "{}\n",
+        outputs(design, &exact, fixed.as_ref())
+    ))?;
+    print(format_args!("{}\n", fired(design, &exact, fixed.as_ref())))?;
+    print(design.note())
+}
+
+/// What every input takes, and its terms' degrees.
+fn inputs(design: &Design, point: &[f64]) -> Table {
+    let system = &design.system;
+    let mut table = table(["input", "value", "terms"]);
+    let grades = memberships(system, point);
+    for ((input, value), grades) in system.inputs.iter().zip(taken(system, point)).zip(&grades) {
+        let reached = input
+            .terms
+            .iter()
+            .zip(grades)
+            .filter(|(_, grade)| **grade > 0.0);
+        let terms: Vec<String> = reached
+            .map(|(term, grade)| format!("{} {}", term.name, degree(*grade)))
+            .collect();
+        let terms = if terms.is_empty() {
+            "none".to_owned()
+        } else {
+            terms.join(", ")
+        };
+        table.add_row([
+            Cell::new(&input.name),
+            right(describe::number(value)),
+            Cell::new(terms),
+        ]);
+    }
+    table
+}
+
+fn outputs(design: &Design, exact: &Evaluation, fixed: Option<&Evaluation>) -> Table {
+    let mut table = table(["output", "f64", "fixed point", "difference"]);
+    let value = |x: Option<f64>| x.map_or("no rule fires".to_owned(), describe::number);
+    for (index, output) in design.system.outputs.iter().enumerate() {
+        let exact = exact.outputs.get(index).copied().flatten();
+        let fixed = fixed.map(|fixed| fixed.outputs.get(index).copied().flatten());
+        let difference = match (exact, fixed.flatten()) {
+            (Some(exact), Some(fixed)) => format!("{:+.1e}", fixed - exact),
+            _ => "–".to_owned(),
+        };
+        table.add_row([
+            Cell::new(&output.name),
+            right(value(exact)),
+            right(fixed.map_or("–".to_owned(), value)),
+            right(difference),
+        ]);
+    }
+    table
+}
+
+/// Every rule that fires, in `f64` or in fixed point.
+fn fired(design: &Design, exact: &Evaluation, fixed: Option<&Evaluation>) -> Table {
+    let mut table = table(["rule", "degree f64", "fixed point", "reads"]);
+    for (index, (_, rule)) in rules(&design.system).enumerate() {
+        let of = |evaluation: &Evaluation| evaluation.rules.get(index).copied().unwrap_or(0.0);
+        let (exact, fixed) = (of(exact), fixed.map(of));
+        if exact > 0.0 || fixed.is_some_and(|degree| degree > 0.0) {
+            table.add_row([
+                right(index + 1),
+                right(degree(exact)),
+                right(fixed.map_or("–".to_owned(), degree)),
+                Cell::new(describe::rule(&design.system, rule)),
+            ]);
+        }
+    }
+    table
+}
+
+/// A degree; one that would read as zero by its power of ten.
+fn degree(degree: f64) -> String {
+    if degree > 0.0 && degree < 0.000_05 {
+        format!("{degree:.0e}")
+    } else {
+        format!("{degree:.4}")
+    }
+}
+
+fn surface(design: &Design, held: &[Option<f64>], each: usize, csv: &Path) -> anyhow::Result<()> {
+    let free = held.iter().filter(|value| value.is_none()).count() as u32;
+    let rows = each.checked_pow(free).filter(|rows| *rows <= MOST_ROWS);
+    if rows.is_none() {
+        return Err(BadInput(format!(
+            "--grid {each}: {each} to the power of {free} rows; allowed are {MOST_ROWS} at most"
+        ))
+        .into());
+    }
+    let mut grid = Grid::even(&design.system, each);
+    for (axis, value) in grid.axes.iter_mut().zip(held) {
+        if let Some(value) = value {
+            *axis = vec![*value];
+        }
+    }
+    let bytes = design.opened(|fixed| table_of(&design.system, fixed.as_ref(), &grid))?;
+    put(csv, &bytes)?;
+    print(format_args!("{}: rows: {}\n", csv.display(), grid.len()))?;
+    print(design.note())
+}
+
+fn table_of(system: &System, fixed: Option<&Fixed<'_>>, grid: &Grid) -> anyhow::Result<Vec<u8>> {
+    let exact = Exact::new(system);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let inputs = system.inputs.iter().map(|input| input.name.clone());
+    let outputs = system.outputs.iter().map(|output| output.name.clone());
+    let in_fixed = outputs.clone().map(|name| format!("{name} (fixed)"));
+    let in_fixed = in_fixed.filter(|_| fixed.is_some());
+    writer.write_record(inputs.chain(outputs).chain(in_fixed))?;
+    let text = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    for first in (0..grid.len()).step_by(8192) {
+        // Evaluated on all cores, written in order.
+        let rows: Vec<Vec<String>> = (first..(first + 8192).min(grid.len()))
+            .into_par_iter()
+            .map(|index| {
+                let point = grid.point(index);
+                let values = exact.evaluate(&point).outputs;
+                let fixed = fixed.map(|fixed| fixed.evaluate(&point).outputs);
+                let numbers = point.into_iter().map(Some).chain(values);
+                numbers
+                    .chain(fixed.into_iter().flatten())
+                    .map(text)
+                    .collect()
+            })
+            .collect();
+        for row in rows {
+            writer.write_record(row)?;
+        }
+    }
+    Ok(writer.into_inner()?)
+}

@@ -1,0 +1,161 @@
+//! From a design's model to the library's fixed point: every variable gets a number format, every shape its straight pieces,
+//! every rule its literals.
+//!
+//! ```text
+//! model::System ──lower──▶ Lowered (owned tables) ──open──▶ Fixed: fuzzypilot's System, evaluated
+//! ```
+
+mod antecedent;
+mod format;
+mod pieces;
+mod set;
+mod tables;
+
+pub use format::Format;
+pub use tables::{Block, Defuzzifier, Input, Number, Output, Rule, Tables};
+
+use super::evaluate::{Evaluation, Evaluator};
+use super::model::{Place, System};
+use fuzzypilot::fuzzy::system::{self, Degree, Flaw};
+
+/// Why a model has no fixed-point form.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LowerError {
+    /// Something of the model is more than the engine takes.
+    #[error("{}{what}: {limit}", at(*place))]
+    TooMany {
+        /// Where.
+        place: Place,
+        /// What, and how many.
+        what: String,
+        /// What is possible.
+        limit: String,
+    },
+    /// A number has no place in its variable's format.
+    #[error("{}{what} does not fit: {limit}", at(*place))]
+    DoesNotFit {
+        /// Where.
+        place: Place,
+        /// Whose number.
+        what: String,
+        /// What is possible.
+        limit: String,
+    },
+    /// The tables are refused by the library's own checks.
+    #[error("{0}")]
+    Flawed(Flaw),
+}
+
+/// `line 3, column 7: `, or nothing for a model that no file holds.
+fn at(place: Place) -> String {
+    match place {
+        Place { line: 0, .. } => String::new(),
+        Place { line, column } => format!("line {line}, column {column}: "),
+    }
+}
+
+/// A model in fixed point.
+#[derive(Clone, Debug)]
+pub struct Lowered {
+    tables: Tables,
+}
+
+/// Lowers a model.
+///
+/// # Errors
+///
+/// What does not fit, named with its place.
+pub fn lower(model: &System) -> Result<Lowered, LowerError> {
+    let tables = Tables::of(model)?;
+    tables
+        .borrowed(|system| system.map(|_| ()))
+        .map_err(LowerError::Flawed)?;
+    Ok(Lowered { tables })
+}
+
+impl Lowered {
+    /// The tables, as a generator of code wants them.
+    pub fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
+    /// Opens it for many evaluations.
+    pub fn open<R>(&self, use_it: impl FnOnce(Fixed<'_>) -> R) -> R {
+        self.tables.borrowed(|system| {
+            let system = system.expect("it was checked when it was lowered");
+            use_it(Fixed {
+                tables: &self.tables,
+                system,
+            })
+        })
+    }
+}
+
+impl Evaluator for Lowered {
+    fn evaluate(&self, inputs: &[f64]) -> Evaluation {
+        self.open(|fixed| fixed.evaluate(inputs))
+    }
+}
+
+/// A lowered model, opened.
+#[derive(Clone, Copy, Debug)]
+pub struct Fixed<'a> {
+    tables: &'a Tables,
+    system: system::System<'a>,
+}
+
+impl<'a> Fixed<'a> {
+    /// The library's system.
+    pub fn system(&self) -> &system::System<'a> {
+        &self.system
+    }
+
+    /// Evaluates it in the variables' own steps: the outputs, and every rule's degree.
+    ///
+    /// # Panics
+    ///
+    /// With another number of inputs than the system's.
+    pub fn steps(&self, inputs: &[i32]) -> (Vec<i32>, Vec<Degree>) {
+        let mut terms = vec![Degree::ZERO; self.system.term_count()];
+        let mut rules = vec![Degree::ZERO; self.system.rule_count()];
+        let mut outputs = vec![0; self.system.outputs().len()];
+        self.system
+            .evaluate(inputs, &mut terms, &mut rules, &mut outputs)
+            .expect("one value an input");
+        (outputs, rules)
+    }
+}
+
+impl Evaluator for Fixed<'_> {
+    /// Inputs are rounded to their formats; one that is missing or NaN has no fixed-point form: then no rule fires.
+    fn evaluate(&self, inputs: &[f64]) -> Evaluation {
+        let formats = self.tables.inputs.iter().map(|input| input.format);
+        let steps: Option<Vec<i32>> = formats
+            .enumerate()
+            .map(|(i, format)| {
+                let value = inputs.get(i).copied().filter(|value| !value.is_nan())?;
+                Some(format.nearest(value))
+            })
+            .collect();
+        let (outputs, rules) = match steps {
+            Some(steps) => self.steps(&steps),
+            None => (
+                self.system.outputs().iter().map(|o| o.default).collect(),
+                vec![Degree::ZERO; self.system.rule_count()],
+            ),
+        };
+        let values = self.tables.outputs.iter().zip(outputs);
+        Evaluation {
+            outputs: values
+                .map(|(output, value)| Some(output.format.value(value)))
+                .collect(),
+            rules: rules
+                .into_iter()
+                .map(|degree| f64::from(degree.bits()) / f64::from(Degree::ONE.bits()))
+                .collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

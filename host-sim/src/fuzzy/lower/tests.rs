@@ -1,0 +1,321 @@
+use super::{Format, LowerError, lower};
+use crate::fuzzy::evaluate::{Evaluator, Exact, rules};
+use crate::fuzzy::model::{
+    Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Merge, Output, OutputTerm, Place,
+    Rule, RuleBlock, Sampling, Shape, System, Term,
+};
+use crate::fuzzy::random;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+/// Whether all of an input's shapes are straight.
+fn straight(input: &Input) -> bool {
+    input.terms.iter().all(|term| {
+        matches!(
+            term.shape,
+            Shape::Triangle { .. }
+                | Shape::Trapezoid { .. }
+                | Shape::Ramp { .. }
+                | Shape::Singleton(_)
+                | Shape::Points(_)
+        )
+    })
+}
+
+/// The strongest rule about an output.
+fn strength(model: &System, degrees: &[f64], output: usize) -> f64 {
+    rules(model)
+        .zip(degrees)
+        .filter(|((_, rule), _)| rule.conclusions.iter().any(|c| c.0 == output))
+        .map(|(_, &degree)| degree)
+        .fold(0.0, f64::max)
+}
+
+/// Errors of outputs with a rule that fires with 0.1 at least, as shares of their ranges, ascending: of systems with
+/// straight shapes, and of the others.
+fn errors(systems: usize, points: usize) -> [Vec<f64>; 2] {
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    let mut errors = [Vec::new(), Vec::new()];
+    for _ in 0..systems {
+        let model = random::system(&mut rng);
+        let lowered = lower(&model).expect("a random system has a form in fixed point");
+        let exact = Exact::new(&model);
+        let kind = usize::from(!model.inputs.iter().all(straight));
+        lowered.open(|fixed| {
+            for _ in 0..points {
+                // As fixed point sees them, so that an upright flank has one side for both.
+                let x: Vec<f64> = model
+                    .inputs
+                    .iter()
+                    .zip(&lowered.tables().inputs)
+                    .map(|(input, low)| {
+                        let (start, end) = (*input.range.start(), *input.range.end());
+                        let x = start + (end - start) * rng.random_range(-0.05..=1.05);
+                        low.format.value(low.format.nearest(x))
+                    })
+                    .collect();
+                let (wanted, found) = (exact.evaluate(&x), fixed.evaluate(&x));
+                assert_eq!(wanted.rules.len(), found.rules.len());
+                for (o, output) in model.outputs.iter().enumerate() {
+                    let (Some(wanted_), Some(found)) = (wanted.outputs[o], found.outputs[o]) else {
+                        continue;
+                    };
+                    if strength(&model, &wanted.rules, o) >= 0.1 {
+                        let width = output.range.end() - output.range.start();
+                        errors[kind].push((wanted_ - found).abs() / width);
+                    }
+                }
+            }
+        });
+    }
+    for errors in &mut errors {
+        errors.sort_by(f64::total_cmp);
+    }
+    errors
+}
+
+/// The error that a share of all is within.
+fn within(errors: &[f64], share: f64) -> f64 {
+    errors[((errors.len() - 1) as f64 * share) as usize]
+}
+
+#[test]
+fn fixed_point_agrees_with_f64() {
+    let [straight, curved] = errors(400, 60);
+    assert!(straight.len() > 10_000 && curved.len() > 10_000);
+    // Wherever something fires with a tenth at least: the worst, and 99 of 100.
+    assert!(
+        (1e-6..3e-4).contains(&within(&straight, 1.0)),
+        "{}",
+        within(&straight, 1.0)
+    );
+    assert!(
+        (1e-7..2e-5).contains(&within(&straight, 0.99)),
+        "{}",
+        within(&straight, 0.99)
+    );
+    // Curves are cut into pieces: the worst are linear conclusions many times as large as the output's range.
+    assert!(
+        (1e-5..5e-2).contains(&within(&curved, 1.0)),
+        "{}",
+        within(&curved, 1.0)
+    );
+    assert!(
+        (1e-6..1e-3).contains(&within(&curved, 0.99)),
+        "{}",
+        within(&curved, 0.99)
+    );
+}
+
+/// A system of one input and one output, to be changed.
+fn small() -> System {
+    let place = Place { line: 7, column: 3 };
+    let term = |name: &str, shape| Term {
+        name: name.into(),
+        shape,
+        place,
+    };
+    let conclusion = |name: &str, conclusion| OutputTerm {
+        name: name.into(),
+        conclusion,
+        place,
+    };
+    let rule = |term, conclusion| Rule {
+        antecedent: Antecedent::Is {
+            input: 0,
+            term,
+            negated: false,
+        },
+        conclusions: vec![(0, conclusion)],
+        weight: 1.0,
+        place,
+    };
+    System {
+        name: "small".into(),
+        inputs: vec![Input {
+            name: "heat".into(),
+            range: 0.0..=10.0,
+            clamp: true,
+            terms: vec![
+                term(
+                    "cold",
+                    Shape::Ramp {
+                        from: 10.0,
+                        to: 0.0,
+                    },
+                ),
+                term(
+                    "hot",
+                    Shape::Ramp {
+                        from: 0.0,
+                        to: 10.0,
+                    },
+                ),
+            ],
+            place,
+        }],
+        outputs: vec![Output {
+            name: "fan".into(),
+            range: 0.0..=100.0,
+            clamp: true,
+            default: None,
+            defuzzifier: Defuzzifier::WeightedAverage,
+            merge: Merge::Sum,
+            terms: vec![
+                conclusion("off", Conclusion::Constant(0.0)),
+                conclusion(
+                    "on",
+                    Conclusion::Linear {
+                        coefficients: vec![10.0],
+                        constant: 1.0,
+                    },
+                ),
+            ],
+            place,
+        }],
+        blocks: vec![RuleBlock {
+            name: String::new(),
+            and: Conjunction::Min,
+            implication: Conjunction::Min,
+            rules: vec![rule(0, 0), rule(1, 1)],
+        }],
+    }
+}
+
+#[test]
+fn values_go_in_and_come_out() {
+    let lowered = lower(&small()).unwrap();
+    let at = |x: f64| lowered.evaluate(&[x]);
+    assert_eq!(at(0.0).outputs, [Some(0.0)]);
+    assert_eq!(at(-5.0).outputs, [Some(0.0)]);
+    // 0.4 · (10 · 4 + 1), but for half a step of the degrees.
+    assert!((at(4.0).outputs[0].unwrap() - 16.4).abs() < 1e-4);
+    assert!((at(4.0).rules[1] - 0.4).abs() < 1e-7);
+    // 101, limited.
+    assert_eq!(at(10.0).outputs, [Some(100.0)]);
+    assert_eq!(at(f64::INFINITY).outputs, [Some(100.0)]);
+    // Nothing fires: the middle of the range, or the default.
+    assert_eq!(at(f64::NAN).outputs, [Some(50.0)]);
+    assert_eq!(at(f64::NAN).rules, [0.0, 0.0]);
+    let mut model = small();
+    model.outputs[0].default = Some(12.5);
+    assert_eq!(lower(&model).unwrap().evaluate(&[]).outputs, [Some(12.5)]);
+    // Without a limit it is what was concluded.
+    model.outputs[0].clamp = false;
+    let unlimited = lower(&model).unwrap().evaluate(&[10.0]).outputs[0].unwrap();
+    assert!((unlimited - 101.0).abs() < 1e-4);
+}
+
+#[test]
+fn formats_follow_the_range() {
+    let fraction = |width, most| Format::of(width, most).map(|format| format.fraction);
+    assert_eq!(fraction(10.0, 10.0), Some(16));
+    assert_eq!(fraction(1.0, 1.0), Some(16));
+    // Narrow ranges get finer steps, large numbers coarser ones.
+    assert_eq!(fraction(0.9, 1.0), Some(17));
+    assert_eq!(fraction(1e-6, 1e-6), Some(36));
+    assert_eq!(fraction(8192.0, 8192.0), Some(16));
+    assert_eq!(fraction(8193.0, 8193.0), Some(15));
+    assert_eq!(fraction(1e12, 1e12), Some(-11));
+    // A thousandth beside a million.
+    assert_eq!(fraction(1.0, 1e6), Some(9));
+    assert_eq!(fraction(1e-3, 1e6), None);
+    assert_eq!(fraction(f64::INFINITY, 1.0), None);
+    assert_eq!(fraction(0.0, 1.0), None);
+    let format = Format { fraction: 16 };
+    assert_eq!(
+        [format.nearest(-0.5), format.nearest(f64::NAN)],
+        [-32_768, 0]
+    );
+    assert_eq!(format.value(-32_768), -0.5);
+}
+
+#[test]
+fn tiny_and_huge_ranges_keep_their_digits() {
+    for scale in [1e-9, 1e-3, 1.0, 1e6, 1e12] {
+        let mut model = small();
+        model.inputs[0].range = 0.0..=10.0 * scale;
+        let to = 10.0 * scale;
+        model.inputs[0].terms[0].shape = Shape::Ramp { from: to, to: 0.0 };
+        model.inputs[0].terms[1].shape = Shape::Gaussian {
+            mean: to,
+            deviation: 3.0 * scale,
+        };
+        model.outputs[0].range = 0.0..=100.0 * scale;
+        model.outputs[0].terms[1].conclusion = Conclusion::Linear {
+            coefficients: vec![10.0],
+            constant: scale,
+        };
+        let lowered = lower(&model).unwrap();
+        let exact = Exact::new(&model);
+        for i in 0..=50 {
+            let x = [f64::from(i) * 0.2 * scale];
+            let (wanted, found) = (exact.evaluate(&x), lowered.evaluate(&x));
+            let error = wanted.outputs[0].unwrap() - found.outputs[0].unwrap();
+            assert!(error.abs() < 1e-3 * 100.0 * scale, "{scale}: {error}");
+        }
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_named_with_its_place() {
+    let message = |change: &dyn Fn(&mut System)| {
+        let mut model = small();
+        change(&mut model);
+        lower(&model).unwrap_err().to_string()
+    };
+    assert_eq!(
+        message(&|model| model.inputs[0].range = 1e6..=1e6 + 1e-3),
+        "line 7, column 3: the input `heat` does not fit: its largest number is more than two million times as large as \
+         its range is wide"
+    );
+    assert_eq!(
+        message(&|model| model.outputs[0].terms[0].conclusion = Conclusion::Constant(1e12)),
+        "line 7, column 3: the output `fan` does not fit: its largest number is more than two million times as large as \
+         its range is wide"
+    );
+    let centroid = |points| Defuzzifier::Centroid {
+        points,
+        sampling: Sampling::Ends,
+    };
+    assert_eq!(
+        message(&|model| model.outputs[0].defuzzifier = centroid(1025)),
+        "line 7, column 3: the output `fan` is sampled at 1025 points: 2 to 1024 are possible"
+    );
+    assert_eq!(
+        message(&|model| model.outputs[0].defuzzifier = centroid(100)),
+        "line 7, column 3: the term `off` does not fit: a centroid takes sets"
+    );
+    assert_eq!(
+        message(&|model| {
+            let term = &mut model.outputs[0].terms[0];
+            term.conclusion = Conclusion::Set(Shape::Singleton(0.0));
+        }),
+        "line 7, column 3: the term `off` does not fit: a weighted average takes numbers"
+    );
+    let is = |term| Antecedent::Is {
+        input: 0,
+        term,
+        negated: false,
+    };
+    let either = Antecedent::Or(vec![is(0), is(1)]);
+    assert_eq!(
+        message(&|model| {
+            let rule = &mut model.blocks[0].rules[0];
+            rule.antecedent = Antecedent::And(vec![either.clone(); 12]);
+        }),
+        "line 7, column 3: the rule, written as OR of ANDs, asks 4608 times for a term: 4096 are possible"
+    );
+    assert_eq!(
+        message(&|model| model.blocks[0].rules[0].antecedent = is(300)),
+        "line 7, column 3: the rule asks for term 301 of input 1: 4 inputs with 255 terms are possible"
+    );
+    assert_eq!(
+        message(&|model| model.blocks[0].rules[0].conclusions = vec![(0, 300)]),
+        "line 7, column 3: the rule concludes term 301 of output 1: 255 outputs with 255 terms are possible"
+    );
+    // What the library itself finds.
+    let mut model = small();
+    model.inputs = vec![model.inputs[0].clone(); 5];
+    assert!(matches!(lower(&model), Err(LowerError::Flawed(_))));
+}

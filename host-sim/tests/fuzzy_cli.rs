@@ -1,0 +1,383 @@
+//! `host-sim fuzzy check`, `eval` and `surface` from outside: what they print and write, exit codes, and what they say of
+//! wrong input.
+
+use assert_cmd::Command;
+use host_sim::fuzzy::evaluate::{Evaluator, Exact};
+use host_sim::fuzzy::files::load;
+use std::fs;
+use std::path::Path;
+use tempfile::{TempDir, tempdir};
+
+/// One of everything that `check` looks for.
+const BOILER: &str = "\
+Engine: boiler
+InputVariable: error
+  range: -10 10
+  term: cold Triangle 0 10 20
+  term: right Triangle -5 0 5
+  term: hot Ramp -2 -8
+InputVariable: load
+  range: 0 1
+  lock-range: true
+  term: light Trapezoid 0 0 0.2 0.4
+  term: heavy Trapezoid 0.5 0.8 1 1
+  term: extreme Triangle 1.2 1.5 1.8
+OutputVariable: valve
+  range: 0 100
+  lock-range: true
+  aggregation: Maximum
+  defuzzifier: Centroid 100
+  default: nan
+  term: shut Triangle 0 0 30
+  term: half Triangle 20 50 80
+  term: open Triangle 70 100 100
+  term: spare Triangle 40 45 50
+RuleBlock: rules
+  conjunction: Minimum
+  disjunction: Maximum
+  implication: Minimum
+  activation: General
+  rule: if error is cold then valve is open
+  rule: if error is cold and load is heavy then valve is open
+  rule: if error is right then valve is half
+  rule: if load is extreme then valve is shut
+  rule: if error is hot and load is light then valve is shut
+";
+
+const FAN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/designs/fan.fll");
+const GREENHOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/designs/greenhouse.fll");
+
+fn sim(dir: &Path) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("host-sim"));
+    command
+        .current_dir(dir)
+        .arg("fuzzy")
+        .timeout(std::time::Duration::from_secs(120));
+    command
+}
+
+/// Runs it and gives stdout back; nothing may appear on stderr.
+fn done(dir: &Path, args: &[&str]) -> String {
+    let output = sim(dir).args(args).assert().success().stderr("");
+    String::from_utf8(output.get_output().stdout.clone()).unwrap()
+}
+
+/// Runs it, expects one line on stderr with every one of `parts` in it, and that the folder stays as it was.
+fn refused(dir: &Path, args: &[&str], parts: &[&str]) {
+    let before = names(dir);
+    let output = sim(dir).args(args).assert().code(2).stdout("");
+    let said = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+    assert_eq!(said.lines().count(), 1, "{args:?}: {said}");
+    for part in parts {
+        assert!(said.contains(part), "{args:?}: `{part}` not in {said}");
+    }
+    assert_eq!(names(dir), before, "{args:?} left something behind");
+}
+
+fn names(dir: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(dir)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+fn with(text: &str) -> TempDir {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("design.fll"), text).unwrap();
+    dir
+}
+
+/// A printed table's rows, cell by cell.
+fn rows(printed: &str) -> Vec<Vec<String>> {
+    let rows = printed.lines().filter(|line| line.starts_with('│'));
+    rows.map(|line| {
+        line.trim_matches('│')
+            .split('┆')
+            .map(|cell| cell.trim().to_owned())
+            .collect()
+    })
+    .collect()
+}
+
+#[test]
+fn a_point_shows_both_values_and_the_rules_that_fire() {
+    let dir = tempdir().unwrap();
+    let said = done(
+        dir.path(),
+        &[
+            "eval",
+            FAN,
+            "--input",
+            "temperature=28",
+            "--input",
+            "humidity=55",
+        ],
+    );
+    let rows = rows(&said);
+    let output = rows.iter().find(|row| row[0] == "fan").unwrap();
+    assert_eq!(output[1..], ["45", "45", "+0.0e0"]);
+    let fired: Vec<&Vec<String>> = rows
+        .iter()
+        .filter(|row| row.last().unwrap().starts_with("if "))
+        .collect();
+    assert_eq!(fired.len(), 4);
+    assert!(
+        fired
+            .iter()
+            .all(|row| row[1] == "0.5000" && row[2] == "0.5000")
+    );
+}
+
+#[test]
+fn where_no_rule_fires_it_says_so() {
+    let dir = with(BOILER);
+    let said = done(
+        dir.path(),
+        &[
+            "eval",
+            "design.fll",
+            "--input",
+            "error=-9",
+            "--input",
+            "load=0.45",
+        ],
+    );
+    let rows = rows(&said);
+    assert_eq!(
+        rows.iter().find(|row| row[0] == "valve").unwrap()[1],
+        "no rule fires"
+    );
+    assert_eq!(rows.iter().find(|row| row[0] == "load").unwrap()[2], "none");
+}
+
+#[test]
+fn a_grid_is_the_whole_surface() {
+    let dir = tempdir().unwrap();
+    let said = done(
+        dir.path(),
+        &[
+            "eval", GREENHOUSE, "--input", "wind=3", "--grid", "6", "--csv", "all.csv",
+        ],
+    );
+    assert_eq!(said, "all.csv: rows: 216\n");
+    let system = load(Path::new(GREENHOUSE), None).unwrap();
+    let exact = Exact::new(&system);
+    let mut reader = csv::Reader::from_path(dir.path().join("all.csv")).unwrap();
+    let header: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    let inputs = system.inputs.len();
+    assert_eq!(
+        header[inputs..],
+        ["vents", "heating", "vents (fixed)", "heating (fixed)"]
+    );
+    let mut count = 0;
+    for row in reader.records() {
+        let row: Vec<f64> = row
+            .unwrap()
+            .iter()
+            .map(|cell| cell.parse().unwrap())
+            .collect();
+        assert_eq!(
+            row[header.iter().position(|name| name == "wind").unwrap()],
+            3.0
+        );
+        let expected = exact.evaluate(&row[..inputs]).outputs;
+        assert_eq!(
+            row[inputs..inputs + 2],
+            [expected[0].unwrap(), expected[1].unwrap()]
+        );
+        for (fixed, exact) in row[inputs + 2..].iter().zip(&row[inputs..]) {
+            assert!((fixed - exact).abs() < 1.0, "{row:?}");
+        }
+        count += 1;
+    }
+    assert_eq!(count, 216);
+}
+
+#[test]
+fn a_good_design_has_no_finding_and_a_small_error() {
+    let dir = tempdir().unwrap();
+    let deny = "gaps,dead-rules,unreachable-terms,non-monotone,no-fixed-point";
+    let said = done(dir.path(), &["check", FAN, "--deny", deny]);
+    for what in [
+        "gaps, where no rule fires",
+        "dead rules",
+        "unreachable terms",
+        "non-monotone cells",
+    ] {
+        assert!(said.contains(&format!("{what}: none\n")), "{said}");
+    }
+    let rows = rows(&said);
+    let error = rows.iter().find(|row| row[0] == "fan").unwrap();
+    let number = |cell: usize| error[cell].parse::<f64>().unwrap();
+    assert!(
+        number(3) > 0.0 && number(3) <= number(4) && number(4) <= number(7) && number(7) < 0.01
+    );
+}
+
+#[test]
+fn every_kind_of_finding_is_named_with_its_place() {
+    let dir = with(BOILER);
+    let said = done(dir.path(), &["check", "design.fll", "--points", "5000"]);
+    for part in [
+        // Between -5, where right ends, and hot, which needs the load light.
+        "error: -10 to -5",
+        "load: 0.4 to 1",
+        "error = -7.5, load = 0.7",
+        "no term of load at 0.4 to 0.5",
+        "line 29: if error is cold and load is heavy then valve is open",
+        "on the grid never above rule 1, which concludes the same",
+        "line 31: if load is extreme then valve is shut",
+        "never fires in the ranges",
+        "line 12: load is extreme",
+        "line 22: valve is spare",
+    ] {
+        assert!(said.contains(part), "`{part}` not in {said}");
+    }
+    let dir = tempdir().unwrap();
+    let coarse = concat!(env!("CARGO_MANIFEST_DIR"), "/designs/coarse-deflection.fll");
+    let said = done(dir.path(), &["check", coarse, "--points", "1000"]);
+    assert!(said.contains("L 0 → Z 90 → R 0"), "{said}");
+}
+
+#[test]
+fn what_is_denied_fails() {
+    let dir = with(BOILER);
+    let denied = |deny: &str| {
+        let output = sim(dir.path())
+            .args(["check", "design.fll", "--points", "100", "--deny", deny])
+            .assert();
+        let output = output.get_output().clone();
+        (
+            output.status.code(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let (code, said) = denied("dead-rules,gaps");
+    assert_eq!(code, Some(1));
+    assert!(
+        said.contains("dead-rules, gaps: found, and denied by --deny"),
+        "{said}"
+    );
+    assert_eq!(denied("unreachable-terms").0, Some(1));
+    assert_eq!(denied("non-monotone,no-fixed-point").0, Some(0));
+    assert_eq!(denied("holes").0, Some(2));
+}
+
+#[test]
+fn a_design_without_fixed_point_is_evaluated_in_f64_and_says_why() {
+    let far = "range: 1e12 1000000000001";
+    let dir = with(&BOILER.replace("range: 0 1\n", &format!("{far}\n")));
+    let point = ["--input", "error=5", "--input", "load=1e12"];
+    let said = done(dir.path(), &[&["eval", "design.fll"][..], &point].concat());
+    assert!(
+        said.contains("no fixed point: ") && said.contains("load"),
+        "{said}"
+    );
+    assert_eq!(
+        rows(&said).iter().find(|row| row[0] == "valve").unwrap()[2],
+        "–"
+    );
+    let output = sim(dir.path())
+        .args(["check", "design.fll", "--deny", "no-fixed-point"])
+        .assert();
+    output.code(1);
+}
+
+#[test]
+fn pictures_of_all_outputs_and_of_the_terms() {
+    let dir = tempdir().unwrap();
+    let hold = ["--axes", "sunlight,wind", "--hold", "humidity=60"];
+    done(
+        dir.path(),
+        &[&["surface", GREENHOUSE, "--out", "deep/down"][..], &hold].concat(),
+    );
+    let mut expected = Vec::new();
+    for what in ["heating", "memberships", "vents"] {
+        expected.extend([
+            format!("greenhouse-{what}.png"),
+            format!("greenhouse-{what}.svg"),
+        ]);
+    }
+    let folder = dir.path().join("deep/down");
+    assert_eq!(names(&folder), expected);
+    let svg = fs::read_to_string(folder.join("greenhouse-vents.svg")).unwrap();
+    for text in [
+        "greenhouse: vents",
+        "held: temperature = 22.5, humidity = 60",
+        "sunlight",
+        "wind",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    // With gaps.
+    let dir = with(BOILER);
+    done(dir.path(), &["surface", "design.fll"]);
+    let svg = fs::read_to_string(dir.path().join("out/fuzzy/design-valve.svg")).unwrap();
+    assert!(svg.contains("no rule fires"));
+    let svg = fs::read_to_string(dir.path().join("out/fuzzy/design-memberships.svg")).unwrap();
+    assert!(svg.contains("out of this range: extreme"));
+}
+
+#[test]
+fn wrong_arguments_are_named_with_what_is_allowed() {
+    let dir = tempdir().unwrap();
+    let here = dir.path();
+    let eval = |inputs: &[&'static str]| {
+        let given = inputs.iter().flat_map(|input| ["--input", *input]);
+        ["eval", FAN].into_iter().chain(given).collect::<Vec<_>>()
+    };
+    refused(here, &eval(&[]), &["missing: temperature, humidity"]);
+    refused(here, &eval(&["temperature=20"]), &["missing: humidity"]);
+    refused(
+        here,
+        &eval(&["heat=20"]),
+        &["heat", "allowed: temperature, humidity"],
+    );
+    refused(
+        here,
+        &eval(&["temperature"]),
+        &["found no `=`", "NAME=VALUE"],
+    );
+    refused(
+        here,
+        &eval(&["temperature=warm"]),
+        &["found `warm`", "a finite number"],
+    );
+    refused(
+        here,
+        &eval(&["temperature=NaN"]),
+        &["found `NaN`", "a finite number"],
+    );
+    refused(here, &eval(&["humidity=1", "humidity=2"]), &["given twice"]);
+    let grid = ["eval", GREENHOUSE, "--grid", "100", "--csv", "all.csv"];
+    refused(here, &grid, &["100 to the power of 4", "2000000 at most"]);
+    let surface = |args: &[&'static str]| [&["surface", GREENHOUSE][..], args].concat();
+    refused(here, &surface(&["--axes", "wind"]), &["wind", "NAME,NAME"]);
+    refused(
+        here,
+        &surface(&["--axes", "wind,wind"]),
+        &["the same input twice"],
+    );
+    refused(
+        here,
+        &surface(&["--axes", "wind,rain"]),
+        &["rain", "humidity"],
+    );
+    refused(
+        here,
+        &surface(&["--hold", "temperature=1"]),
+        &["is drawn over"],
+    );
+    refused(
+        here,
+        &["check", "none.fll"],
+        &["none.fll", "cannot be read"],
+    );
+}
