@@ -15,23 +15,29 @@
 //! * Everything that can be wrong with a table is checked while it compiles: see [`Partition::new`],
 //!   [`Consequents::new`] and [`RuleTable::new`].
 //!
-//! That is the fast route. [`system`] takes every other kind of rule base.
+//! That is the fast route. Where the peaks of both inputs are evenly spaced and there are two outputs, [`TwinTable`] says
+//! the same in a fraction of the instructions. [`system`] takes every other kind of rule base.
 //!
 //! # Which route for what
 //!
-//! | | two inputs, whole tables | [`system`]: anything else |
-//! |---|---|---|
-//! | inputs, outputs | 2, any number | 1 to 4, 1 to 255 |
-//! | terms | a Ruspini partition: triangles, shoulders | triangles, trapezoids, shoulders, singletons, points; Gaussians, bells, sigmoids, splines in pieces |
-//! | AND, OR, NOT | min, –, – | min or product, max, one minus the degree |
-//! | rule weights | – | yes |
-//! | conclusions | singletons | singletons, Takagi–Sugeno of order 1, sampled sets |
-//! | defuzzification | height | height, centroid, centre of sums |
-//! | rules that share a conclusion | summed | summed or max-merged |
-//! | work | four rules, whatever the table | every rule, every sample |
-//! | chosen by the type | [`Antecedents`] and [`RuleTable`] | [`system::System`] |
+//! | | two even inputs, two tables | two inputs, whole tables | [`system`]: anything else |
+//! |---|---|---|---|
+//! | inputs, outputs | 2, 2 | 2, any number | 1 to 4, 1 to 255 |
+//! | terms | evenly spaced triangles, shoulders | a Ruspini partition: triangles, shoulders | triangles, trapezoids, shoulders, singletons, points; Gaussians, bells, sigmoids, splines in pieces |
+//! | AND, OR, NOT | min, –, – | min, –, – | min or product, max, one minus the degree |
+//! | rule weights | – | – | yes |
+//! | conclusions | singletons | singletons | singletons, Takagi–Sugeno of order 1, sampled sets |
+//! | defuzzification | height | height | height, centroid, centre of sums |
+//! | rules that share a conclusion | summed | summed | summed or max-merged |
+//! | inputs come as | [`Position`], by an [`InputScale`] | `I16F16` | `i32` |
+//! | work | four rules; divides once, or by products alone | four rules, one division an output | every rule, every sample |
+//! | chosen by the type | [`TwinTable`] | [`Antecedents`] and [`RuleTable`] | [`system::System`] |
 //!
-//! Both do the same work for every input, give the same bits on every machine, cannot panic and are checked while they
+//! With physical units in and out, two outputs of 5 × 5 rules cost a [`TwinTable`] and its scales
+//! at most 45 instructions on a Cortex-M4F, 160 on a Cortex-M0 and 110 on a RISC-V rv32imc, the same for every input, and
+//! at most 512 bytes of flash: `cargo engine` counts them, and fails where it is more.
+//!
+//! All three do the same work for every input, give the same bits on every machine, cannot panic and are checked while they
 //! compile. **Not supported**: type-2 and intuitionistic sets, hedges (very, somewhat), other norms than these (bounded,
 //! drastic, Einstein, Hamacher), terms higher or lower than one, Takagi–Sugeno of a higher order, Tsukamoto, mean, smallest
 //! or largest of maximum, bisector, chained rule blocks, and more than four inputs.

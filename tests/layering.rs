@@ -1,5 +1,5 @@
 //! The import rules, held by reading `src/` as text: the engine knows no other module, the stages of a tick do not know
-//! each other, only the tick touches the hardware's traits, and nothing needs std, floats or the simulator.
+//! each other, only the tick touches the hardware's traits, nothing needs std, floats or the simulator, and one file is unsafe.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -17,6 +17,13 @@ const FLOATS: &[(&str, &str)] = &[
     // The speed of sound at a temperature: computed once, while settings are made, into a fixed-point constant. The
     // tick and the drivers compute with that constant in integers.
     ("ports/sound.rs", "f32"),
+];
+
+/// Files of the library that may be `unsafe`; the firmware's own (`main`) is aside, it has registers to reach. The same
+/// rule.
+const UNSAFE: &[&str] = &[
+    // One block of instructions that the compiler does not offer otherwise, on processors that have them.
+    "fuzzy/dsp.rs",
 ];
 
 /// What only the ports, the tick and those who own both may name.
@@ -219,6 +226,9 @@ fn breaches(sources: &[Source]) -> Vec<String> {
                 found.push(format!("{} names {foreign}", source.path));
             }
         }
+        if words.contains(&"unsafe") && own != "main" && !UNSAFE.contains(&source.path.as_str()) {
+            found.push(format!("{} names unsafe", source.path));
+        }
         for hardware in HARDWARE {
             if words.contains(&hardware) && !OWNERS.contains(&own) {
                 found.push(format!("{} names {hardware}", source.path));
@@ -247,6 +257,12 @@ fn every_exception_is_still_needed() {
         let source = source.unwrap_or_else(|| panic!("{path} is gone"));
         let words = words(&source.code);
         assert!(words.contains(&float), "{path} does not name {float}");
+    }
+    for &path in UNSAFE {
+        let source = sources.iter().find(|s| s.path == path);
+        let source = source.unwrap_or_else(|| panic!("{path} is gone"));
+        let words = words(&source.code);
+        assert!(words.contains(&"unsafe"), "{path} is not unsafe");
     }
 }
 
@@ -307,6 +323,9 @@ fn breaches_are_seen() {
         ("guard.rs", "use std::vec::Vec;", "std"),
         ("guard.rs", "let x = 1.0 as f32;", "f32"),
         ("guard.rs", "use host_sim::World;", "host_sim"),
+        ("fuzzy/twin.rs", "fn f() { unsafe { g() } }", "unsafe"),
+        ("fuzzy.rs", "unsafe impl Sync for Twin {}", "unsafe"),
+        ("firmware/pipe.rs", "unsafe extern \"C\" {}", "unsafe"),
         ("ports/echo.rs", "let x = 1.0 as f32;", "f32"),
         ("ports/sound.rs", "let x = 1.0 as f64;", "f64"),
         ("ports/echo.rs", "use crate::geometry::Point;", "geometry"),
@@ -352,6 +371,9 @@ fn breaches_are_seen() {
         ("tick.rs", "use crate::ports::{Ports, RangeSensors};"),
         ("sense.rs", "use crate::ports::{Fault, Range};"),
         ("ports/sound.rs", "let x = 1.0 as f32;"),
+        ("fuzzy/dsp.rs", "unsafe { asm!(\"nop\") }"),
+        ("lib.rs", "#![deny(unsafe_code)] // unsafe"),
+        ("main/motors.rs", "unsafe { register.write() }"),
         (
             "ports/echo.rs",
             "use super::Range; use crate::units::Metres; use embedded_hal::digital;",

@@ -2,16 +2,20 @@
 
 use crate::counts::{COUNTED, Needs};
 use crate::footprint::Footprint;
+use crate::page::{Page, compiler, grouped};
 use crate::repository;
-use anyhow::{Context, ensure};
+use crate::slack::{self, Misfit, roomy};
+use anyhow::Context;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::process::Command;
 
 const FILE: &str = "tests/budgets.toml";
-const README: &str = "README.md";
-const BEGIN: &str = "<!-- budgets: written by `cargo budgets --write` -->\n";
-const END: &str = "<!-- budgets end -->\n";
+const README: Page = Page {
+    file: "README.md",
+    begin: "<!-- budgets: written by `cargo budgets --write` -->\n",
+    end: "<!-- budgets end -->\n",
+    renew: "cargo budgets --write",
+};
 
 const HEAD: &str = "\
 # What a tick with eight ranges may cost on each core: bytes, and instructions as QEMU executes them. `median` and `worst`
@@ -63,32 +67,6 @@ pub struct Measured {
     pub needs: Needs,
 }
 
-/// A budget that does not fit.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Misfit {
-    what: String,
-    measured: u32,
-    budget: u32,
-}
-
-impl std::fmt::Display for Misfit {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self {
-            what,
-            measured,
-            budget,
-        } = self;
-        if measured > budget {
-            write!(f, "{what}: {measured} is over its budget of {budget}")
-        } else {
-            write!(
-                f,
-                "{what}: {measured} leaves its budget of {budget} slack by more than a fifth"
-            )
-        }
-    }
-}
-
 impl Budgets {
     /// Reads the file.
     pub fn read() -> anyhow::Result<Self> {
@@ -107,16 +85,13 @@ impl Budgets {
         for core in measured {
             let budgets = self.0.entry(core.core.0.to_owned()).or_default();
             let mut see = |what: &str, measured: u32, budget: &mut u32| {
-                let fits = measured <= *budget && measured >= budget.saturating_sub(*budget / 5);
-                if !fits {
-                    misfits.push(Misfit {
-                        what: format!("{}: {what}", core.core.1),
-                        measured,
-                        budget: *budget,
-                    });
-                    if renew {
-                        *budget = roomy(measured);
-                    }
+                misfits.extend(slack::see(
+                    &format!("{}: {what}", core.core.1),
+                    measured,
+                    *budget,
+                ));
+                if renew && !slack::fits(measured, *budget) {
+                    *budget = roomy(measured);
                 }
             };
             see("flash", core.footprint.flash, &mut budgets.flash.budget);
@@ -240,63 +215,9 @@ impl Budgets {
     }
 }
 
-/// 5 % more, in round numbers.
-fn roomy(measured: u32) -> u32 {
-    let wanted = u64::from(measured) * 105 / 100;
-    let step = match wanted {
-        ..1000 => 1,
-        1000..10_000 => 10,
-        _ => 100,
-    };
-    u32::try_from(wanted.next_multiple_of(step)).unwrap_or(u32::MAX)
-}
-
-fn grouped(number: u32) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-/// Another compiler counts a little otherwise.
-fn compiler() -> anyhow::Result<String> {
-    let output = Command::new("rustc").arg("--version").output()?;
-    let text = String::from_utf8(output.stdout)?;
-    let version = text.split_whitespace().nth(1).context("rustc --version")?;
-    Ok(format!("rustc {version}"))
-}
-
-/// Compares the table in the README, or puts it there. Another compiler's table is let stand: the budgets hold for any.
+/// Compares the table in the README, or puts it there.
 pub fn readme(table: &str, write: bool) -> anyhow::Result<()> {
-    let file = repository(README);
-    let text =
-        std::fs::read_to_string(&file).with_context(|| format!("{README}: cannot be read"))?;
-    let (before, rest) = text
-        .split_once(BEGIN)
-        .with_context(|| format!("{README}: there is no line {BEGIN}"))?;
-    let (present, after) = rest
-        .split_once(END)
-        .with_context(|| format!("{README}: there is no line {END}"))?;
-    let present = present.trim();
-    if write {
-        let new = format!("{before}{BEGIN}\n{table}\n{END}{after}");
-        return std::fs::write(&file, new).with_context(|| format!("{README}: cannot be written"));
-    }
-    let (here, there) = (table.lines().last(), present.lines().last());
-    if here != there {
-        println!("{README}: the table is another compiler's and is not compared");
-        return Ok(());
-    }
-    ensure!(
-        present == table.trim(),
-        "{README}: the table is not what was measured: cargo budgets --write"
-    );
-    Ok(())
+    README.hold(table, write)
 }
 
 #[cfg(test)]

@@ -1,42 +1,36 @@
 //! `cargo engine`: what one evaluation of the fine controller costs on each core, and what it is linked with.
 
-use crate::machine::{Images, MACHINES, Machine, Time};
-use anyhow::{Context, bail, ensure};
+mod alone;
+mod bars;
+mod count;
+
+use crate::machine::{Images, MACHINES};
+use anyhow::{Context, bail};
+use bars::Bars;
 use fuzzypilot::behaviour::fine::FineMotion;
-use object::{Object, ObjectSymbol, SymbolKind};
 use replica::fine::{CONTROLLER, grid, mix};
 
-/// The ways in the image's order.
-const WAYS: [&str; 3] = ["plain Rust", "compiled in", "by reference"];
-
-/// What a core may need: instructions by [`WAYS`], bytes of flash.
-struct Bar {
-    core: &'static str,
-    instructions: [u32; 3],
-    flash: u64,
-}
-
-/// By the core's key.
-const BARS: [Bar; 3] = [
-    Bar {
-        core: "m4f",
-        instructions: [80, 55, 45],
-        flash: 512,
-    },
-    Bar {
-        core: "m0",
-        instructions: [170, 160, 170],
-        flash: 540,
-    },
-    Bar {
-        core: "rv32",
-        instructions: [110, 110, 110],
-        flash: 512,
-    },
+/// What is measured on each core, in the order of the table: key in `engine.toml`, and words for people.
+const ROWS: [(&str, &str); 6] = [
+    ("plain", "plain Rust, settings by reference, instructions"),
+    ("by-reference", "settings by reference, instructions"),
+    ("compiled-in", "settings compiled in, instructions"),
+    ("flash", "flash: code, scales, tables, bytes"),
+    ("memory", "mutable memory, bytes"),
+    ("stack", "stack, bytes"),
 ];
 
-/// Counts, prints, and compares with the bars and with this machine's results.
-pub fn run() -> anyhow::Result<()> {
+/// One core's.
+#[derive(Clone, Copy, Debug)]
+struct Measured {
+    /// Its key and its name.
+    core: (&'static str, &'static str),
+    /// By [`ROWS`].
+    needs: [u32; ROWS.len()],
+}
+
+/// Counts, prints, and compares with the bars, with the page and with this machine's results; or writes bars and page.
+pub fn run(write: bool) -> anyhow::Result<()> {
     let images = Images::build()?;
     let expected = grid().fold(0, |sum, (d, error)| {
         let FineMotion {
@@ -44,107 +38,44 @@ pub fn run() -> anyhow::Result<()> {
         } = CONTROLLER.evaluate(d, error);
         mix(sum, (speed.bits(), yaw_rate.bits()))
     });
-    let mut misses = Vec::new();
+    let mut measured = Vec::new();
     for machine in &MACHINES {
-        let bar = BARS
-            .iter()
-            .find(|bar| bar.core == machine.key)
-            .context("a core without a bar")?;
-        misses.extend(core(machine, &images, bar, expected)?);
-    }
-    if misses.is_empty() {
-        return Ok(());
-    }
-    bail!("{}", misses.join("; "))
-}
-
-fn core(
-    machine: &Machine,
-    images: &Images,
-    bar: &Bar,
-    expected: u32,
-) -> anyhow::Result<Vec<String>> {
-    let folder = tempfile::tempdir()?;
-    let words = machine
-        .run(
-            &images.of(machine, "fine"),
-            folder.path(),
-            &[],
-            Time::Counted,
-        )?
-        .words()?;
-    let [empty, thousand, _, call, _, ways @ ..] = words.as_slice() else {
-        bail!("{}: nothing was counted", machine.name);
-    };
-    let instructions = |ticks: u32| machine.instructions(ticks).round() as u32;
-    ensure!(
-        instructions(thousand.wrapping_sub(*empty)).abs_diff(1000) <= 32,
-        "{}: the clock is no instruction counter",
-        machine.name
-    );
-    let mut misses = Vec::new();
-    let (ways, rest) = ways.as_chunks::<3>();
-    ensure!(rest.is_empty() && ways.len() == WAYS.len(), "half a way");
-    for ((name, [least, most, sum]), bar) in WAYS.iter().zip(ways).zip(bar.instructions) {
-        let [least, most] = [least, most].map(|t| instructions(t.saturating_sub(*call)) + 1);
+        let counted = count::count(machine, &images, expected)?;
+        let [plain, compiled_in, by_reference] = counted.instructions;
+        let alone = alone::look(machine, &images)?;
+        alone::refused(machine, &images)?;
         println!(
-            "{}, {name}: {least} to {most} instructions (at most {bar})",
+            "{}: one count for every input, this machine's results, no float or division routine; one unwrap more does not link",
             machine.name
         );
-        if most > bar || least != most {
-            misses.push(format!(
-                "{}, {name}: {least} to {most} instructions; allowed is one number up to {bar}",
-                machine.name
-            ));
-        }
-        if *sum != expected {
-            misses.push(format!(
-                "{}, {name}: the results are not this machine's",
-                machine.name
-            ));
-        }
+        measured.push(Measured {
+            core: (machine.key, machine.name),
+            needs: [
+                plain,
+                by_reference,
+                compiled_in,
+                alone.flash,
+                alone.memory,
+                counted.stack,
+            ],
+        });
     }
-    let (flash, foreign) = alone(machine, images)?;
-    println!("{}: {flash} bytes of code and tables", machine.name);
-    if flash > bar.flash {
-        misses.push(format!(
-            "{}: {flash} bytes of code and tables; allowed is {}",
-            machine.name, bar.flash
-        ));
+    let mut bars = Bars::read()?;
+    let misfits = bars.check(&measured, write);
+    for misfit in &misfits {
+        println!("{misfit}");
     }
-    if !foreign.is_empty() {
-        misses.push(format!(
-            "{}: linked with {}",
-            machine.name,
-            foreign.join(", ")
-        ));
+    let table = bars.table(&measured)?;
+    println!("\n{table}");
+    if write {
+        bars.write()?;
+        return bars::PAGE.hold(&table, true);
     }
-    Ok(misses)
-}
-
-/// Bytes of the controller's function, scales and tables; and what of floats and divisions is linked with it. That it
-/// links says that nothing panics.
-fn alone(machine: &Machine, images: &Images) -> anyhow::Result<(u64, Vec<String>)> {
-    let image = images.of(machine, "fine-alone");
-    let bytes = std::fs::read(&image).with_context(|| image.display().to_string())?;
-    let file = object::File::parse(&*bytes)?;
-    let (mut flash, mut code, mut foreign) = (0, 0, Vec::new());
-    for symbol in file.symbols() {
-        let name = symbol.name()?;
-        let own = name == "fine_controller" || name.contains("CONTROLLER") || name.contains("TWIN");
-        if own {
-            flash += symbol.size();
-        }
-        if name == "fine_controller" && symbol.kind() == SymbolKind::Text {
-            code = symbol.size();
-        }
-        if ["__aeabi_f", "__aeabi_d", "div", "panic"]
-            .iter()
-            .any(|part| name.contains(part))
-        {
-            foreign.push(name.to_owned());
-        }
+    if !misfits.is_empty() {
+        bail!(
+            "{} budgets do not fit; if that is meant: cargo engine --write",
+            misfits.len()
+        );
     }
-    ensure!(code > 0, "{}: no controller in the image", machine.name);
-    Ok((flash, foreign))
+    bars::PAGE.hold(&table, false).context("budgets fit, but")
 }

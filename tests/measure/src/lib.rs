@@ -13,6 +13,8 @@ pub mod engine;
 pub mod exact;
 pub mod footprint;
 pub mod machine;
+pub mod page;
+pub mod slack;
 pub mod suite;
 pub mod synthetic;
 pub mod systems;

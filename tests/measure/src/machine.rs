@@ -223,21 +223,46 @@ impl Images {
             .find(|folder| folder.join("CACHEDIR.TAG").is_file())
             .context("the build folder was not found")?
             .join("replica");
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let images = Self { folder };
         for machine in &MACHINES {
-            let status = Command::new(&cargo)
-                .current_dir(repository("."))
-                .env("CARGO_ENCODED_RUSTFLAGS", "")
-                .args(["build", "--quiet", "--package", "replica"])
-                .args(["--profile", machine.profile, "--target", machine.target])
-                .arg("--target-dir")
-                .arg(&folder)
+            let status = images
+                .command(machine)
                 .status()
                 .context("cargo cannot be started")?;
             let name = machine.name;
             ensure!(status.success(), "the image for {name} cannot be built");
         }
-        Ok(Self { folder })
+        Ok(images)
+    }
+
+    /// Builds an image with one of the package's features, and expects that it cannot be: what was said then, or nothing
+    /// if it was built.
+    pub fn refused(
+        &self,
+        machine: &Machine,
+        name: &str,
+        feature: &str,
+    ) -> anyhow::Result<Option<String>> {
+        let built = self
+            .command(machine)
+            .args(["--bin", name, "--features", feature])
+            .output()
+            .context("cargo cannot be started")?;
+        let said = String::from_utf8_lossy(&built.stderr).into_owned();
+        Ok((!built.status.success()).then_some(said))
+    }
+
+    fn command(&self, machine: &Machine) -> Command {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let mut command = Command::new(cargo);
+        command
+            .current_dir(repository("."))
+            .env("CARGO_ENCODED_RUSTFLAGS", "")
+            .args(["build", "--quiet", "--package", "replica"])
+            .args(["--profile", machine.profile, "--target", machine.target])
+            .arg("--target-dir")
+            .arg(&self.folder);
+        command
     }
 
     /// The file of an image.

@@ -26,8 +26,8 @@ enum Command {
     Budgets(Write),
     /// Evaluate general fuzzy systems: the same bits everywhere, the same count of instructions for every input.
     Systems,
-    /// Count one evaluation of the fine controller over a grid, and compare results and costs with what is allowed.
-    Engine,
+    /// Count one evaluation of the fine controller over a grid, and compare results, tests/engine.toml and docs/engine.md.
+    Engine(Write),
 }
 
 #[derive(Args)]
@@ -51,7 +51,7 @@ fn main() -> ExitCode {
         Command::BitExact(arguments) => bit_exact(&arguments),
         Command::Budgets(arguments) => budgets(arguments.write),
         Command::Systems => systems(),
-        Command::Engine => engine::run(),
+        Command::Engine(arguments) => engine::run(arguments.write),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,5 +1,5 @@
 //! The fine controller and nothing else: its size, and what it is linked with. It links only where nothing can panic.
-//! Never run.
+//! Never run. With the feature `one-panic` it has an `unwrap` of what is known at run time only, to see it refused.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -27,6 +27,8 @@ mod image {
     #[unsafe(no_mangle)]
     #[inline(never)]
     fn fine_controller(d: Metres, heading_error: Angle) -> Bits {
+        #[cfg(feature = "one-panic")]
+        let d = Metres::from_bits(i32::from(i16::try_from(d.bits()).unwrap()));
         let motion = CONTROLLER.evaluate(d, heading_error);
         (motion.speed.bits(), motion.yaw_rate.bits())
     }

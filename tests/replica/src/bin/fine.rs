@@ -1,7 +1,7 @@
 //! The fine controller counted over a dense grid: three ways to evaluate it, the same inputs.
 //!
 //! Words in `out`: the count of nothing and of 1,000 instructions; for a call of one instruction and for each way the
-//! least and the greatest count and a checksum of all outputs.
+//! least and the greatest count, a checksum of all outputs, and how deep the stack goes below its caller's caller.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 // The player's: it needs more of them.
@@ -13,11 +13,18 @@ mod clock;
 #[path = "../image/files.rs"]
 #[allow(dead_code)]
 mod files;
+#[cfg(target_os = "none")]
+#[path = "../image/stack.rs"]
+#[allow(dead_code)]
+mod stack;
 
 #[cfg(target_os = "none")]
 mod image {
     use crate::clock::{self, now, since};
     use crate::files::Output;
+    use crate::stack::depth_of;
+    use core::hint::black_box;
+    use core::mem::MaybeUninit;
     use fuzzypilot::behaviour::fine::{FineController, FineMotion};
     use fuzzypilot::units::{Angle, Metres};
     use replica::fine::{CONTROLLER, grid, mix};
@@ -60,6 +67,16 @@ mod image {
         output.word(least);
         output.word(most);
         output.word(sum);
+        output.word(depth_of(|| beneath(way)));
+    }
+
+    /// Calls from below the stack that a painter leaves alone, and marks the place: one word at the lower end.
+    #[inline(never)]
+    fn beneath(way: Way) {
+        let mut ballast = [const { MaybeUninit::<u32>::uninit() }; 64];
+        black_box(&mut ballast)[0].write(0);
+        black_box(way(&CONTROLLER, black_box(1 << 15), black_box(1 << 28)));
+        black_box(&mut ballast);
     }
 
     /// One instruction: what calling costs.
