@@ -70,6 +70,39 @@ pub(crate) fn quotient(value: i64, divisor: i32) -> Option<i64> {
     })
 }
 
+/// A number by which is divided again and again: worked out once, a quotient is a product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reciprocal {
+    factor: u32,
+    shift: u32,
+}
+
+impl Reciprocal {
+    /// For quotients `numerator / divisor`, numerators from 2^29 to 2^30. A divisor of 0 counts as 1, one beyond 2^31 as
+    /// that.
+    pub(crate) const fn new(numerator: u32, divisor: u32) -> Self {
+        let divisor = match divisor {
+            0 => 1,
+            1..=0x7fff_ffff => divisor,
+            _ => 0x7fff_ffff,
+        };
+        // The divisor is from 2^shift to below twice that: the factor has 29 bits at least.
+        let shift = 31u32.wrapping_sub(divisor.leading_zeros());
+        let factor = match divide((numerator as u64).wrapping_shl(shift), divisor) {
+            Some(factor) => factor as u32,
+            None => 0,
+        };
+        Self { factor, shift }
+    }
+
+    /// `numerator · value / divisor`, rounded down; off by no more than 2^-29 of itself, and one.
+    pub(crate) const fn times(self, value: i32) -> i64 {
+        (value as i64)
+            .wrapping_mul(self.factor as i64)
+            .wrapping_shr(self.shift)
+    }
+}
+
 /// Square root, rounded down.
 ///
 /// Zimmermann's Karatsuba square root with one level (*INRIA RR-3805*, 1999): the root of the upper half, then 16 more
@@ -158,8 +191,8 @@ pub(crate) const fn arctangent(x: i32, y: i32) -> i32 {
     if y < 0 { whole.wrapping_neg() } else { whole }
 }
 
-/// `least / most` with 24 fractional bits, for `least` ≤ `most`; 0 if both are.
-const fn proper_fraction(least: u32, most: u32) -> u32 {
+/// `least / most` with 24 fractional bits, for `least` ≤ `most`, short by 2 steps at most; 0 if both are.
+pub(crate) const fn proper_fraction(least: u32, most: u32) -> u32 {
     let shift = most.leading_zeros();
     let (least, most) = (least.wrapping_shl(shift), most.wrapping_shl(shift));
     // By the divisor's upper half, plus one so that nothing comes out too large: the first digit is short by 2 at most.

@@ -54,13 +54,22 @@ impl Obstacle {
         }
     }
 
+    /// All that deciding and avoiding ask of the obstacle that is passed, `grown` the growth of its radius.
+    pub fn sight(&self, grown: Metres) -> Sight {
+        Sight {
+            bearing: self.bearing(),
+            distance: self.centre.norm(),
+            half_angle: self.unfeasible_half_angle(grown),
+        }
+    }
+
     /// The edge of the unfeasible region on the side of a `turn`: the bearing and half the angle together, by one
     /// arctangent.
     pub fn unfeasible_edge(&self, grown: Metres, turn: Turn) -> Angle {
         let reach = self.radius + grown;
         let beyond = self.centre.norm_squared().checked_sub(square(reach));
         let leg = beyond.map_or(Metres::ZERO, root);
-        let [x, y] = [self.centre.x, self.centre.y].map(|m| i64::from(m.bits()));
+        let (x, y) = (i64::from(self.centre.x.bits()), i64::from(self.centre.y.bits()));
         let leg = i64::from(leg.bits());
         let aside = match turn {
             Turn::Left => i64::from(reach.bits()),
@@ -77,9 +86,20 @@ impl Obstacle {
     /// `grown`, stands on that ray.
     pub fn covers(&self, way: Rotation, grown: Metres) -> bool {
         let (along, beside) = way.along_and_beside(self.centre);
-        let reach = i64::from((self.radius + grown).bits());
-        along > 0 && beside.saturating_abs() < reach << Rotation::FRACTION
+        let reach = i64::from((self.radius + grown).bits()) << Rotation::FRACTION;
+        along > 0 && beside < reach && beside > reach.wrapping_neg()
     }
+}
+
+/// How an obstacle lies before the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sight {
+    /// Direction of its centre, body frame.
+    pub bearing: Angle,
+    /// Distance of its centre.
+    pub distance: Metres,
+    /// Half the angle of its unfeasible region.
+    pub half_angle: Angle,
 }
 
 /// What the sensors say this tick.

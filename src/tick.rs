@@ -10,7 +10,7 @@ use crate::params::{ParamError, Params};
 use crate::ports::{
     Fault, Ports, RangeReading, RangeSensors, Side, WheelCounts, WheelDrive, WheelEncoders,
 };
-use crate::sense::{Odometer, sense_ranges};
+use crate::sense::{Beams, Odometer, sense_ranges};
 use crate::signals::{Behaviour, Decision, Sensed, TickRecord, Travel, Twist};
 use crate::supervisor::{Situation, SupervisorState};
 use crate::units::MetresPerSecond;
@@ -51,6 +51,8 @@ impl Probe for () {
 #[derive(Clone, Debug)]
 pub struct Robot<const N: usize> {
     params: Params<N>,
+    // From the settings, before the first tick.
+    beams: Option<Beams<N>>,
     // Scratch of one tick. Here, because a microcontroller's stack is small.
     readings: [RangeReading; N],
     sensed: Sensed,
@@ -68,6 +70,7 @@ impl<const N: usize> Robot<N> {
         Self {
             localiser: Localiser::new(&params.body, start),
             params,
+            beams: None,
             readings: [RangeReading::NEVER_SEEN; N],
             sensed: Sensed::new(),
             odometer: Odometer::new(),
@@ -95,6 +98,7 @@ impl<const N: usize> Robot<N> {
     /// The first setting that the robot cannot be driven with; then nothing is forgotten.
     pub fn restart(&mut self, start: Pose) -> Result<(), ParamError> {
         self.params.check()?;
+        self.beams = None;
         self.localiser = Localiser::new(&self.params.body, start);
         self.odometer = Odometer::default();
         self.restart_path();
@@ -184,7 +188,9 @@ impl<const N: usize> Robot<N> {
         let p = &self.params;
         let travel = self.odometer.travel(counts);
         let readings = self.readings.get(..mounted).unwrap_or_default();
-        sense_ranges(&p.ring, readings, self.last.linear, &mut self.sensed);
+        let beams = self.beams.get_or_insert_with(|| Beams::new(&p.ring));
+        let speed = self.last.linear;
+        sense_ranges(&p.ring, beams, readings, speed, &mut self.sensed);
         probe.mark(Stage::Sense);
         self.localiser.advance(&p.body, p.integrator, travel);
         probe.mark(Stage::Localise);
@@ -210,7 +216,7 @@ impl<const N: usize> Robot<N> {
             robot_radius: p.body.radius,
             sensed,
             travel,
-            pose,
+            pose: pose.frame(),
             guidance: &guidance,
         };
         let decision = self
@@ -229,6 +235,7 @@ impl<const N: usize> Robot<N> {
                 sensed,
                 *side,
                 obstacle,
+                self.supervisor.sight(),
             ),
             Decision::Stop(_) => Behaviour::default(),
         };

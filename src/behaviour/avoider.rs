@@ -15,16 +15,19 @@
 
 use super::follower::rate_of;
 use crate::geometry::square;
-use crate::integer::{ratio, saturate};
+use crate::integer::{proper_fraction, saturate};
 use crate::params::{Avoider, Limits};
-use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Turn, Twist};
+use crate::signals::{
+    Behaviour, Controller, Obstacle, RuleTrace, Sensed, Sight, Turn, Twist,
+};
 use crate::units::{Angle, Metres, MetresPerSecond};
 use fixed::types::I16F16;
 
 /// Least angle by which a heading must clear the unfeasible region: keeps the strict ">" of the chapter after rounding.
 const EDGE: Angle = Angle::deg("0.5");
 
-/// Desired motion while passing `held` on its committed side.
+/// Desired motion while passing `held` on its committed side. `sight` is that of `held`, grown by the robot's radius and
+/// the margin.
 pub fn avoid(
     avoider: &Avoider,
     limits: &Limits,
@@ -32,6 +35,7 @@ pub fn avoid(
     sensed: &Sensed,
     side: Turn,
     held: &Obstacle,
+    sight: Sight,
 ) -> Behaviour {
     // In the mirrored frame the committed turn is always to the right: positive Δθ.
     let mirror = |angle: Angle| match side {
@@ -39,10 +43,13 @@ pub fn avoid(
         Turn::Left => -angle,
     };
     let grown = robot_radius + avoider.margin;
-    let theta = mirror(held.bearing());
-    let distance = held.centre.norm();
+    let theta = mirror(sight.bearing);
+    let distance = sight.distance;
     let free = (distance - held.radius - robot_radius).max(Metres::ZERO);
-    let share = ratio(free.bits(), 1 << 16, avoider.range.bits());
+    // Beyond the range the tables see no difference. 24 fractional bits to 16, rounded.
+    let near = free.min(avoider.range).bits().unsigned_abs();
+    let share = proper_fraction(near, avoider.range.bits().unsigned_abs());
+    let share = (share.wrapping_add(1 << 7) >> 8) as i32;
     let (s, theta_degrees) = (I16F16::from_bits(share), theta.degrees());
     let out = avoider
         .tables
@@ -50,7 +57,7 @@ pub fn avoid(
         .evaluate(s, theta_degrees, avoider.speed_input);
 
     // Wanted bearing of the obstacle in the next tick, mirrored frame: θ + Δθ.
-    let half = held.unfeasible_half_angle(grown);
+    let half = sight.half_angle;
     let deflection = Angle::from_degrees(I16F16::from_num(out.deflection));
     // Past half a turn the sum stays there: wrapped, an obstacle behind would seem to be on the other side.
     let fuzzy = Angle::from_bits(theta.bits().saturating_add(deflection.bits()));

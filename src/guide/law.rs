@@ -33,7 +33,7 @@ pub fn guide(
     // From a standing start the whole reach may be used to find the path. Later the nearest place runs ahead of the
     // robot only where that is far inside a bend, and there it must not run through the path.
     let driven = last.linear.abs().over(period);
-    let reach = if *cursor == Cursor::default() {
+    let reach = if cursor.is_at_start() {
         follower.reach
     } else {
         follower
