@@ -38,10 +38,18 @@
 //! assert_eq!(FAN.defuzzify(&activation), I8F8::lit("45"));
 //! ```
 
+mod even;
 mod inference;
 mod partition;
+mod product;
+mod reciprocal;
 mod rules;
+mod scale;
+mod twin;
 
-pub use inference::{Activation, Antecedents, FiredRule};
+pub use even::Position;
+pub use inference::{Activation, ActiveRules, Antecedents, FiredRule};
 pub use partition::{Grade, Membership, Partition};
 pub use rules::{Consequents, FixedOutput, MAX_TERMS, RuleTable, Term};
+pub use scale::{InputScale, OutputScale};
+pub use twin::{Twin, TwinTable};

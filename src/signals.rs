@@ -2,7 +2,7 @@
 //!
 //! Frames: *world* is the odometry frame, in which the path is given too; *body* is the robot's, x forward, y left.
 
-use crate::fuzzy::FiredRule;
+use crate::fuzzy::ActiveRules;
 use crate::geometry::{Point, Pose, Rotation, root, square};
 use crate::params::MAX_BEAMS;
 use crate::ports::Fault;
@@ -265,7 +265,7 @@ pub enum Controller {
 pub struct RuleTrace {
     /// Which controller ran.
     pub controller: Controller,
-    /// d (axis units) or s (share of the detection range), as `I16F16` bits.
+    /// d (axis units, up to the axis' end) or s (share of the detection range), as `I16F16` bits.
     pub distance_input: i32,
     /// φ (fine, unsigned) or θ (coarse, chapter's sign), degrees as `I16F16` bits.
     pub angle_input: i32,
@@ -274,9 +274,9 @@ pub struct RuleTrace {
     /// Deflection in degrees, `I8F8` bits: unsigned (fine) or clockwise positive (coarse).
     pub deflection_output: i16,
     /// Rules of the (deflection) table.
-    pub rules: Vec<FiredRule, 4>,
-    /// Rules of the coarse speed table; empty for the fine controller, whose tables share theirs.
-    pub speed_rules: Vec<FiredRule, 4>,
+    pub rules: ActiveRules,
+    /// Rules of the coarse speed table; none for the fine controller, whose tables share theirs.
+    pub speed_rules: ActiveRules,
 }
 
 /// What the lower level wants.

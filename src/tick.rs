@@ -1,6 +1,6 @@
 //! The robot's tick: every stage in order, one way out.
 
-use crate::behaviour::{avoider::avoid, follower::follow};
+use crate::behaviour::{avoider::avoid, fine::FineController, follower::follow};
 use crate::drive::drive;
 use crate::geometry::Pose;
 use crate::guard::guard;
@@ -53,6 +53,8 @@ pub struct Robot<const N: usize> {
     params: Params<N>,
     // From the settings, before the first tick.
     beams: Option<Beams<N>>,
+    // Of the settings, made where they are checked.
+    fine: FineController,
     // Scratch of one tick. Here, because a microcontroller's stack is small.
     readings: [RangeReading; N],
     sensed: Sensed,
@@ -69,6 +71,7 @@ impl<const N: usize> Robot<N> {
     pub const fn new(params: Params<N>, start: Pose) -> Self {
         Self {
             localiser: Localiser::new(&params.body, start),
+            fine: FineController::new(&params.follower, &params.limits),
             params,
             beams: None,
             readings: [RangeReading::NEVER_SEEN; N],
@@ -99,6 +102,7 @@ impl<const N: usize> Robot<N> {
     pub fn restart(&mut self, start: Pose) -> Result<(), ParamError> {
         self.params.check()?;
         self.beams = None;
+        self.fine = FineController::new(&self.params.follower, &self.params.limits);
         self.localiser = Localiser::new(&self.params.body, start);
         self.odometer = Odometer::default();
         self.restart_path();
@@ -227,7 +231,14 @@ impl<const N: usize> Robot<N> {
             twist: desired,
             trace,
         } = match &decision {
-            Decision::Follow => follow(&p.follower, &p.limits, p.period, &guidance, self.last),
+            Decision::Follow => follow(
+                &self.fine,
+                &p.follower,
+                &p.limits,
+                p.period,
+                &guidance,
+                self.last,
+            ),
             Decision::Avoid { side, obstacle } => avoid(
                 &p.avoider,
                 &p.limits,

@@ -1,6 +1,6 @@
 //! The link protocol: bytes that are the same everywhere, and a document that says what they are.
 
-use fuzzypilot::fuzzy::{FiredRule, Grade};
+use fuzzypilot::fuzzy::{ActiveRules, FiredRule, Grade};
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::link::frame::{self, Counters, Decoder, FrameError, MAX_FRAME, MAX_MESSAGE};
 use fuzzypilot::link::message::{MAX_READINGS, PART_BYTES, Readings, ToTarget};
@@ -76,14 +76,25 @@ fn decision() -> impl Strategy<Value = Decision> {
     ]
 }
 
-fn rules() -> impl Strategy<Value = heapless::Vec<FiredRule, 4>> {
-    let rule =
-        (any::<u8>(), any::<u8>(), 0..=1u16 << 15).prop_map(|(row, col, degree)| FiredRule {
-            row,
-            col,
-            degree: Grade::from_bits(degree),
-        });
-    prop::collection::vec(rule, 0..=4).prop_map(|rules| rules.into_iter().collect())
+/// Any of the four rules around an input.
+fn rules() -> impl Strategy<Value = ActiveRules> {
+    let degree = prop_oneof![Just(0), 0..=1u16 << 15];
+    (
+        0..u8::MAX,
+        0..u8::MAX,
+        [degree.clone(), degree.clone(), degree.clone(), degree],
+    )
+        .prop_map(|(row, col, degrees)| {
+            let rule = |down, right, degree| FiredRule {
+                row: row + down,
+                col: col + right,
+                degree: Grade::from_bits(degree),
+            };
+            let [a, b, c, d] = degrees;
+            let mut fired = vec![rule(0, 0, a), rule(0, 1, b), rule(1, 0, c), rule(1, 1, d)];
+            fired.retain(|rule| rule.degree > Grade::ZERO);
+            ActiveRules::of_fired(&fired).unwrap()
+        })
 }
 
 fn trace() -> impl Strategy<Value = RuleTrace> {
@@ -259,8 +270,8 @@ fn field(record: &TickRecord, name: &str) -> i64 {
         "valid_ranges" => record.valid_ranges.into(),
         "nearest" => record.nearest.bits(),
         "held.echoes" => held.echoes.into(),
-        "rules" => trace.rules.len() as i32,
-        "speed_rules" => trace.speed_rules.len() as i32,
+        "rules" => trace.rules.fired().len() as i32,
+        "speed_rules" => trace.speed_rules.fired().len() as i32,
         "reserved" => 0,
         "distance_input" => trace.distance_input,
         "angle_input" => trace.angle_input,
@@ -272,8 +283,8 @@ fn field(record: &TickRecord, name: &str) -> i64 {
         "twist.angular" => record.twist.angular.bits(),
         "wheels.left" => record.wheels.left.bits(),
         "wheels.right" => record.wheels.right.bits(),
-        name if name.starts_with("rule") => return rule(&trace.rules),
-        _ => return rule(&trace.speed_rules),
+        name if name.starts_with("rule") => return rule(&trace.rules.fired()),
+        _ => return rule(&trace.speed_rules.fired()),
     })
 }
 

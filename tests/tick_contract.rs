@@ -917,8 +917,9 @@ impl Digest {
             self.add(bits.into());
         }
         for rules in [&r.trace.rules, &r.trace.speed_rules] {
-            self.add(rules.len() as i64);
-            for rule in rules {
+            let fired = rules.fired();
+            self.add(fired.len() as i64);
+            for rule in &fired {
                 self.add(rule.row.into());
                 self.add(rule.col.into());
                 self.add(rule.degree.bits().into());

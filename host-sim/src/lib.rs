@@ -4,6 +4,7 @@
 //! `Robot::tick`, or of a robot's behind a link ([`hil`]); [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
 
 pub mod control;
+pub mod fuzzy;
 pub mod hil;
 pub mod metrics;
 pub mod params;

@@ -6,7 +6,7 @@ use crate::run::{Gap, Period, Step};
 use crate::scenario::Scenario;
 use crate::si;
 use crate::tables::{COARSE_DEFLECTION, COARSE_SPEED, FINE_DEFLECTION, FINE_SPEED, views};
-use fuzzypilot::fuzzy::FiredRule;
+use fuzzypilot::fuzzy::ActiveRules;
 use fuzzypilot::signals::{Controller, Decision, RuleTrace, StopReason, Turn};
 use fuzzypilot::tables::{coarse, fine};
 
@@ -148,8 +148,9 @@ fn signals(trace: &RuleTrace) -> Vec<(&'static str, f64)> {
 }
 
 fn fired(trace: &RuleTrace) -> Vec<FiredView> {
-    let of = |table: usize, rules: &[FiredRule]| -> Vec<FiredView> {
+    let of = |table: usize, rules: &ActiveRules| -> Vec<FiredView> {
         rules
+            .fired()
             .iter()
             .map(|rule| FiredView {
                 table,

@@ -82,8 +82,8 @@ pub fn row(record: &TickRecord) -> Vec<String> {
         fixed(trace.speed_output.into(), speed_bits),
         fixed(trace.deflection_output.into(), 8),
     ]);
-    row.extend(rules(&trace.rules));
-    row.extend(rules(&trace.speed_rules));
+    row.extend(rules(&trace.rules.fired()));
+    row.extend(rules(&trace.speed_rules.fired()));
     row.extend([
         q16(record.desired.linear.bits()),
         q16(record.desired.angular.bits()),

@@ -100,8 +100,8 @@ pub fn avoid(
             angle_input: theta_degrees.to_bits(),
             speed_output: out.speed.to_bits(),
             deflection_output: out.deflection.to_bits(),
-            rules: out.deflection_rules.fired(),
-            speed_rules: out.speed_rules.fired(),
+            rules: out.deflection_rules.rules(),
+            speed_rules: out.speed_rules.rules(),
         },
     }
 }

@@ -131,6 +131,11 @@ impl<const N: usize> Partition<N> {
         }
     }
 
+    /// The peaks' raw integers, ascending.
+    pub(super) const fn raw_peaks(&self) -> &[i32; N] {
+        &self.peaks
+    }
+
     /// The peaks, ascending.
     pub fn peaks(&self) -> [I16F16; N] {
         self.peaks.map(I16F16::from_bits)

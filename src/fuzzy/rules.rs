@@ -120,6 +120,13 @@ pub struct RuleTable<const R: usize, const C: usize, O> {
     format: PhantomData<O>,
 }
 
+impl<const R: usize, const C: usize, O> RuleTable<R, C, O> {
+    /// The peaks that the rules conclude, raw.
+    pub(super) const fn cells(&self) -> &[[i16; C]; R] {
+        &self.cells
+    }
+}
+
 impl<const R: usize, const C: usize, O: FixedOutput> RuleTable<R, C, O> {
     /// From the consequent term of every cell, a row of the source a row of the table, and the terms' peaks.
     ///

@@ -5,7 +5,7 @@
 //! [`units`](crate::units). What a record does not have – an obstacle held while following, the fourth of two rules –
 //! is zero, and [`decode`] refuses anything else there.
 
-use crate::fuzzy::{FiredRule, Grade};
+use crate::fuzzy::{ActiveRules, FiredRule, Grade};
 use crate::geometry::{Point, Pose};
 use crate::signals::{
     Controller, Decision, Guidance, Obstacle, RuleTrace, StopReason, TickRecord, Turn, Twist,
@@ -39,6 +39,7 @@ pub fn encode_into(record: &TickRecord, bytes: &mut [u8; RECORD_BYTES]) {
     };
     let guidance = &record.guidance;
     let trace = &record.trace;
+    let (rules, speed_rules) = (trace.rules.fired(), trace.speed_rules.fired());
     let flag = |set: bool, bit: u8| if set { bit } else { 0 };
 
     to.put(record.tick.to_le_bytes());
@@ -68,18 +69,13 @@ pub fn encode_into(record: &TickRecord, bytes: &mut [u8; RECORD_BYTES]) {
     to.put(guidance.laps.to_le_bytes());
     to.put([record.obstacles, record.valid_ranges]);
     to.word(record.nearest.bits());
-    to.put([
-        held.echoes,
-        trace.rules.len() as u8,
-        trace.speed_rules.len() as u8,
-        0,
-    ]);
+    to.put([held.echoes, rules.len() as u8, speed_rules.len() as u8, 0]);
     to.word(trace.distance_input);
     to.word(trace.angle_input);
     to.put(trace.speed_output.to_le_bytes());
     to.put(trace.deflection_output.to_le_bytes());
-    to.rules(&trace.rules);
-    to.rules(&trace.speed_rules);
+    to.rules(&rules);
+    to.rules(&speed_rules);
     to.twist(record.desired);
     to.twist(record.twist);
     to.word(record.wheels.left.bits());
@@ -243,7 +239,7 @@ impl Writer<'_> {
         self.word(twist.angular.bits());
     }
 
-    fn rules(&mut self, rules: &Vec<FiredRule, 4>) {
+    fn rules(&mut self, rules: &[FiredRule]) {
         for i in 0..4 {
             let rule = rules.get(i).copied().unwrap_or_default();
             self.put([rule.row, rule.col]);
@@ -290,8 +286,8 @@ impl Reader<'_> {
     }
 
     /// `count` rules at the front of four places, the others zero.
-    fn rules(&mut self, count: u8) -> Option<Vec<FiredRule, 4>> {
-        let mut rules = Vec::new();
+    fn rules(&mut self, count: u8) -> Option<ActiveRules> {
+        let mut rules: Vec<FiredRule, 4> = Vec::new();
         for i in 0..4 {
             let [row, col] = self.take()?;
             let degree = u16::from_le_bytes(self.take()?);
@@ -309,6 +305,9 @@ impl Reader<'_> {
                 return None;
             }
         }
-        (usize::from(count) == rules.len()).then_some(rules)
+        if usize::from(count) != rules.len() {
+            return None;
+        }
+        ActiveRules::of_fired(&rules)
     }
 }

@@ -4,7 +4,10 @@
 //! `[0, 90]`. "Derived" is the only value that fits the chapter's worked example, "assumed" our choice where the
 //! figures are lost.
 
-use crate::fuzzy::{Activation, Antecedents, Consequents, Partition, RuleTable, Term};
+use crate::fuzzy::{
+    Activation, Antecedents, Consequents, InputScale, Partition, Position, RuleTable, Term,
+    TwinTable,
+};
 use fixed::FixedI16;
 use fixed::types::extra::U13;
 use fixed::types::{I8F8, I16F16};
@@ -145,7 +148,12 @@ pub struct FineTables {
     pub speed: RuleTable<5, 5, Speed>,
     /// Deflection in degrees, unsigned: the sign of the turn comes from geometry.
     pub deflection: RuleTable<5, 5, Deflection>,
+    /// Both, for evaluation. What a robot carries; the rest is for people.
+    pub twin: &'static FineTwin,
 }
+
+/// Speed and deflection of all rules, packed.
+pub type FineTwin = TwinTable<5, 5, 4>;
 
 /// What one evaluation of a [`FineTables`] gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,23 +167,42 @@ pub struct FineOutput {
 }
 
 impl FineTables {
-    /// Equations 7.2 and 7.3: `d` on `[0, 4]`, `phi` in degrees on `[0, 180]`; both saturate at the ends.
-    #[inline]
+    /// Equations 7.2 and 7.3: `d` on `[0, 4]`, `phi` in degrees on `[0, 180]`; both saturate at the ends. The robot
+    /// comes to the same result without axes: [`behaviour::fine`](crate::behaviour::fine).
     pub fn evaluate(&self, d: I16F16, phi: I16F16) -> FineOutput {
-        let activation = self.antecedents.activate(phi, d);
+        // Four units are the axis, 2^32 steps: 2^14 of them a count.
+        const D: InputScale = InputScale::new(1 << 14);
+        let twin = self.twin.evaluate(turned(phi), D.position(d.to_bits()));
+        let [speed, deflection] = twin.rounded();
         FineOutput {
-            speed: self.speed.defuzzify(&activation),
-            deflection: self.deflection.defuzzify(&activation),
-            activation,
+            speed: Speed::from_bits(speed),
+            deflection: Deflection::from_bits(deflection),
+            activation: twin.activation,
         }
     }
 }
+
+/// φ's position: 180° are the axis, 2^32 steps, and a count of 2^-16 is 2^14 / 45 of them.
+fn turned(phi: I16F16) -> Position {
+    let count = phi.to_bits().clamp(0, 180 << 16) as u32;
+    let of_2_26 = ((count << 8) + 22) / 45;
+    match of_2_26 {
+        0..0x400_0000 => Position::from_bits(of_2_26 << 6),
+        _ => Position::LAST,
+    }
+}
+
+// The packed tables are statics of their own, so that an image without people in it holds nothing else.
+static PRINTED_TWIN: FineTwin = TwinTable::new(&ANTECEDENTS, &SPEED_7_1, &DEFLECTION_7_2);
+static PROSE_TWIN: FineTwin = TwinTable::new(&ANTECEDENTS, &SPEED_7_1, &DEFLECTION_PROSE);
+static TUNED_TWIN: FineTwin = TwinTable::new(&ANTECEDENTS, &SPEED_TUNED, &DEFLECTION_TUNED);
 
 /// Tables 7.1 and 7.2 as printed.
 pub static PRINTED: FineTables = FineTables {
     antecedents: ANTECEDENTS,
     speed: SPEED_7_1,
     deflection: DEFLECTION_7_2,
+    twin: &PRINTED_TWIN,
 };
 
 /// As printed, but the cell (d = N, φ = N) of Table 7.2 as the worked example's prose has it.
@@ -183,6 +210,7 @@ pub static PRINTED_PROSE: FineTables = FineTables {
     antecedents: ANTECEDENTS,
     speed: SPEED_7_1,
     deflection: DEFLECTION_PROSE,
+    twin: &PROSE_TWIN,
 };
 
 /// The tuned set for the `guided` law.
@@ -190,6 +218,7 @@ pub static TUNED: FineTables = FineTables {
     antecedents: ANTECEDENTS,
     speed: SPEED_TUNED,
     deflection: DEFLECTION_TUNED,
+    twin: &TUNED_TWIN,
 };
 
 /// Which fine tables to use.
@@ -213,6 +242,15 @@ impl FineSet {
             Self::Printed => &PRINTED,
             Self::PrintedProse => &PRINTED_PROSE,
             Self::Tuned => &TUNED,
+        }
+    }
+
+    /// The tables packed for evaluation.
+    pub const fn twin(self) -> &'static FineTwin {
+        match self {
+            Self::Printed => &PRINTED_TWIN,
+            Self::PrintedProse => &PROSE_TWIN,
+            Self::Tuned => &TUNED_TWIN,
         }
     }
 }

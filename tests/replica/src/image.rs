@@ -2,7 +2,7 @@
 //!
 //! | mode | words in `out` |
 //! |---|---|
-//! | ticks | first the count of nothing and of 1,000 instructions; a tick: itself, one evaluation of the fine tables with its inputs (0 where they were not asked) |
+//! | ticks | first the count of nothing and of 1,000 instructions; a tick: itself, one evaluation of the fine controller with its inputs (0 where they were not asked) |
 //! | stages | the same two, of marks; a tick: its stages in the order of [`Stage`](fuzzypilot::tick::Stage) |
 //! | stack | a tick: bytes of stack |
 
@@ -12,15 +12,16 @@ mod stack;
 
 use clock::{Clock, now, since};
 use files::{Input, Output};
-use fixed::types::I16F16;
+use fuzzypilot::behaviour::fine::FineController;
 use fuzzypilot::geometry::Pose;
 use fuzzypilot::guide::Path;
 use fuzzypilot::link::record::encode;
+use fuzzypilot::params::Law;
 use fuzzypilot::ports::Ports;
 use fuzzypilot::presets;
-use fuzzypilot::signals::{Controller, TickRecord};
-use fuzzypilot::tables::fine::{FineOutput, FineTables};
+use fuzzypilot::signals::{Controller, TickRecord, Twist};
 use fuzzypilot::tick::Robot;
+use fuzzypilot::units::{Angle, Metres};
 use replica::owned::Owned;
 use replica::tape::{self, Inputs, Mode, NoWheels, Source, Store};
 
@@ -207,22 +208,30 @@ fn ports(inputs: &Inputs) -> Ports<NoWheels, &Inputs, &Inputs> {
     }
 }
 
-/// The count of one evaluation of the fine tables with the tick's inputs.
+/// The count of one evaluation of the fine controller with the tick's inputs.
 fn inference<const N: usize>(robot: &Robot<N>, record: &TickRecord) -> u32 {
     if record.trace.controller != Controller::Fine {
         return 0;
     }
-    let d = I16F16::from_bits(record.trace.distance_input);
-    let phi = I16F16::from_bits(record.trace.angle_input);
-    let tables = robot.params().follower.tables.tables();
+    let params = robot.params();
+    let fine = FineController::new(&params.follower, &params.limits);
+    let guidance = &record.guidance;
+    let d = match params.follower.law {
+        Law::Paper => guidance.distance,
+        Law::Guided => guidance.cross_track.abs(),
+    };
     let begin = now();
-    let out = evaluate(tables, d, phi);
+    let out = evaluate(&fine, d, guidance.heading_error);
     let count = since(begin);
     core::hint::black_box(out);
     count
 }
 
 #[inline(never)]
-fn evaluate(tables: &FineTables, d: I16F16, phi: I16F16) -> FineOutput {
-    tables.evaluate(d, phi)
+fn evaluate(fine: &FineController, d: Metres, heading_error: Angle) -> Twist {
+    let motion = fine.evaluate(d, heading_error);
+    Twist {
+        linear: motion.speed,
+        angular: motion.yaw_rate,
+    }
 }

@@ -1,0 +1,100 @@
+//! Products wider than 32 bits, rounded down to 32. A processor that has no upper half of a product puts it together from
+//! two of 16 bits; the results are the same.
+
+/// `sum · reciprocal / 2²⁰` for a `reciprocal` from 2¹⁶ to 2¹⁷ and a result below 2²⁷.
+#[inline(always)]
+pub(super) const fn mean(sum: i32, reciprocal: u32) -> i32 {
+    #[cfg(not(narrow))]
+    return wide::mean(sum, reciprocal);
+    #[cfg(narrow)]
+    return narrow::mean(sum, reciprocal);
+}
+
+/// `value · factor / 2¹⁶⁺ˢʰⁱᶠᵗ`, `shift` from 1 to 16.
+#[inline(always)]
+pub(super) const fn scaled(value: i32, factor: u16, shift: u8) -> i32 {
+    #[cfg(not(narrow))]
+    return wide::scaled(value, factor, shift);
+    #[cfg(narrow)]
+    return narrow::scaled(value, factor, shift);
+}
+
+/// Of the 64-bit product the upper half, which is an instruction of its own nearly everywhere.
+#[cfg(any(not(narrow), test))]
+mod wide {
+    #[inline(always)]
+    pub const fn mean(sum: i32, reciprocal: u32) -> i32 {
+        upper_half(sum, reciprocal.wrapping_shl(12) as i32)
+    }
+
+    #[inline(always)]
+    pub const fn scaled(value: i32, factor: u16, shift: u8) -> i32 {
+        upper_half(
+            value,
+            (factor as i32).wrapping_shl(16u32.wrapping_sub(shift as u32)),
+        )
+    }
+
+    #[inline(always)]
+    const fn upper_half(a: i32, b: i32) -> i32 {
+        ((a as i64).wrapping_mul(b as i64) >> 32) as i32
+    }
+}
+
+#[cfg(any(narrow, test))]
+mod narrow {
+    #[inline(always)]
+    pub const fn mean(sum: i32, reciprocal: u32) -> i32 {
+        let beyond_one = times(sum, reciprocal.wrapping_sub(1 << 16));
+        sum.wrapping_add(beyond_one) >> 4
+    }
+
+    #[inline(always)]
+    pub const fn scaled(value: i32, factor: u16, shift: u8) -> i32 {
+        times(value, factor as u32).wrapping_shr(shift as u32)
+    }
+
+    /// `value · factor / 2^16`, rounded down, for a factor up to 2^16.
+    #[inline(always)]
+    const fn times(value: i32, factor: u32) -> i32 {
+        let upper = (value >> 16).wrapping_mul(factor as i32);
+        let lower = (value as u32 & 0xffff).wrapping_mul(factor) >> 16;
+        upper.wrapping_add(lower as i32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{narrow, wide};
+
+    /// Numbers at and around every power of two, of both signs.
+    fn numbers() -> impl Iterator<Item = i32> {
+        (0..31).flat_map(|bit| {
+            let power = 1i32 << bit;
+            [power - 1, power, power / 3 * 2, -power, 1 - power]
+        })
+    }
+
+    #[test]
+    fn both_ways_give_the_same_integer() {
+        for sum in numbers() {
+            for reciprocal in (1 << 16..=1 << 17).step_by(13).chain([1 << 17]) {
+                let exact = (i64::from(sum) * i64::from(reciprocal)) >> 20;
+                if exact.abs() >= 1 << 27 {
+                    continue;
+                }
+                assert_eq!(i64::from(wide::mean(sum, reciprocal)), exact);
+                assert_eq!(i64::from(narrow::mean(sum, reciprocal)), exact);
+            }
+        }
+        for value in numbers() {
+            for factor in (0..=u16::MAX).step_by(127).chain([1, u16::MAX]) {
+                for shift in 1..=16 {
+                    let exact = (i64::from(value) * i64::from(factor)) >> (16 + shift);
+                    assert_eq!(i64::from(wide::scaled(value, factor, shift)), exact);
+                    assert_eq!(i64::from(narrow::scaled(value, factor, shift)), exact);
+                }
+            }
+        }
+    }
+}
