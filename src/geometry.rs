@@ -117,6 +117,37 @@ impl Rotation {
         Point::new(times(distance, self.cos), times(distance, self.sin))
     }
 
+    /// Of the direction (x, y), a vector of this `length`, which is above zero and below 2^63. The direction is exact; the
+    /// result is as long as one within 2^-14.
+    pub(crate) const fn of_length(x: i64, y: i64, length: u64) -> Self {
+        // The length's top bit goes to the second place of the upper half; neither coordinate is longer.
+        let up = length.leading_zeros().saturating_sub(1);
+        let divisor = (length.wrapping_shl(up) >> 47) as u32;
+        // 2^31 by the upper 16 bits of it: 2^46 by the length.
+        let reciprocal = match (1u32 << 31).checked_div(divisor) {
+            Some(reciprocal) => reciprocal as i64,
+            None => 0,
+        };
+        let cos = (x.wrapping_shl(up) >> 32).wrapping_mul(reciprocal) >> 16;
+        let sin = (y.wrapping_shl(up) >> 32).wrapping_mul(reciprocal) >> 16;
+        Self::from_bits(cos as i32, sin as i32)
+    }
+
+    /// Both turns together.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let (c, s) = (i64::from(self.cos.to_bits()), i64::from(self.sin.to_bits()));
+        let (p, q) = (i64::from(other.cos.to_bits()), i64::from(other.sin.to_bits()));
+        Self::from_bits(
+            (c.wrapping_mul(p).wrapping_sub(s.wrapping_mul(q)) >> 30) as i32,
+            (s.wrapping_mul(p).wrapping_add(c.wrapping_mul(q)) >> 30) as i32,
+        )
+    }
+
+    /// The angle turned by.
+    pub fn angle(self) -> Angle {
+        Angle::of(self.cos.to_bits(), self.sin.to_bits())
+    }
+
     /// A quarter turn further, counter-clockwise.
     pub fn left(self) -> Self {
         Self {

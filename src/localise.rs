@@ -98,5 +98,5 @@ fn chord(arc: i64, turned: i32) -> i64 {
 }
 
 fn narrow(wide: i64) -> Metres {
-    Metres::from_bits(saturate(wide.saturating_add(1 << 15) >> 16))
+    Metres::from_bits(saturate((wide >> 15).wrapping_add(1) >> 1))
 }

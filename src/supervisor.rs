@@ -1,7 +1,7 @@
 //! The higher level: which sub-task runs. Thresholds, dwell and side commitment are assumed; the chapter gives none,
 //! and with a single threshold robots chatter.
 
-use crate::geometry::{Frame, Point, Pose, Rotation, square};
+use crate::geometry::{Frame, Point, Pose, square};
 use crate::params::{Avoider, Supervisor};
 use crate::signals::{
     Decision, Guidance, Obstacle, Sensed, Sight, StopReason, Travel, Turn,
@@ -325,12 +325,12 @@ pub fn threat<'a>(
     }
     let way = now.guidance.heading_error.rotation();
     let near = Metres::from_bits(params.enter.bits() >> 1);
+    // What stands beyond the path's end is nobody's business.
+    let [far, near] = [params.enter, near].map(|limit| limit.min(now.guidance.remaining));
     now.sensed.obstacles.iter().find(|obstacle| {
         let within = |limit| obstacle.is_nearer(now.robot_radius, limit);
-        // What stands beyond the path's end is nobody's business.
-        within(now.guidance.remaining)
-            && ((within(params.enter) && obstacle.covers(way, grown))
-                || (within(near) && obstacle.covers(Rotation::NONE, grown)))
+        within(far)
+            && (obstacle.covers(way, grown) || (obstacle.stands_ahead(grown) && within(near)))
     })
 }
 

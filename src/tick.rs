@@ -182,7 +182,7 @@ impl<const N: usize> Robot<N> {
     // The stages, in two functions that know no ports: so they are in an image once, and the stack that sensing needs is
     // free again when the others begin.
 
-    /// Sense, localise.
+    /// Sense.
     fn sense<P: Probe>(
         &mut self,
         counts: Result<WheelCounts, Fault>,
@@ -196,15 +196,15 @@ impl<const N: usize> Robot<N> {
         let speed = self.last.linear;
         sense_ranges(&p.ring, beams, readings, speed, &mut self.sensed);
         probe.mark(Stage::Sense);
-        self.localiser.advance(&p.body, p.integrator, travel);
-        probe.mark(Stage::Localise);
         travel
     }
 
-    /// Guide, supervise, behave, guard, drive.
+    /// Localise, guide, supervise, behave, guard, drive.
     fn decide<P: Probe>(&mut self, path: &Path<'_>, travel: Travel, probe: &mut P) -> TickRecord {
         let p = &self.params;
-        let (sensed, pose) = (&self.sensed, self.localiser.pose());
+        let pose = self.localiser.advance(&p.body, p.integrator, travel);
+        probe.mark(Stage::Localise);
+        let sensed = &self.sensed;
         let timing = (p.period, p.latency);
         let guidance = guide(
             &p.follower,

@@ -4,7 +4,7 @@
 use super::local::Local;
 use super::path::{Path, next};
 use super::preview::{Allowed, Preview};
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, square};
 use crate::units::{Metres, MetresPerSecond, PerMetre};
 use fixed::types::I16F16;
 
@@ -96,12 +96,15 @@ impl Cursor {
             *local = Local::new(&path.piece(next));
         }
         let (foot, forward) = local.frame(self.along);
-        let offset = place - foot.at;
+        let Point {
+            x: ahead,
+            y: cross_track,
+        } = forward.back(place - foot.at);
         let progress = self.base + self.along;
         Fix {
             foot,
-            cross_track: forward.back(offset).y,
-            distance: offset.norm(),
+            cross_track,
+            distance: length(ahead, cross_track),
             progress,
             remaining: if path.is_closed() {
                 Metres::MAX
@@ -153,5 +156,16 @@ impl Cursor {
             corner,
         };
         self.preview.limit_squared(path, here, &allowed)
+    }
+}
+
+/// Length of the vector from the foot. There it is at a right angle to the path, except at an end: nearly always it is
+/// |beside|, and no root is needed.
+fn length(ahead: Metres, beside: Metres) -> Metres {
+    // √(a² + b²) is less than a²/2b more than b.
+    if square(ahead) <= u64::from(beside.bits().unsigned_abs()) << 1 {
+        beside.abs()
+    } else {
+        Point::new(ahead, beside).norm()
     }
 }

@@ -9,7 +9,7 @@
 
 use super::cursor::Cursor;
 use super::path::Path;
-use crate::geometry::{Point, Pose, root};
+use crate::geometry::{Point, Pose, root, square};
 use crate::integer::saturate;
 use crate::params::{Follower, Law, Limits};
 use crate::signals::{Guidance, Twist};
@@ -80,7 +80,12 @@ pub fn guide(
         progress: fix.progress,
         remaining: fix.remaining,
         laps: fix.laps,
-        speed_limit: MetresPerSecond::from_bits(root(squared).bits()),
+        // Most of the way the robot's own top speed is allowed: then there is no root.
+        speed_limit: if squared >= square(Metres::from_bits(limits.speed.bits())) {
+            limits.speed
+        } else {
+            MetresPerSecond::from_bits(root(squared).bits())
+        },
         at_end: ends && !elsewhere,
         missed_end: elsewhere && follower.law == Law::Paper,
     }

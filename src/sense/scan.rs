@@ -198,17 +198,22 @@ impl<const N: usize> Finds<'_, N> {
             nearest.pop();
         }
         let obstacle = circle_of(self.ring, self.space, run, &sensed.echoes);
-        // There is room now. What lies farther moves up.
+        // There is room now. What lies farther moves up, and the new one is written once more only if something did.
         let _ = (obstacles.push(obstacle), nearest.push(run.nearest));
-        let mut at = nearest.len().saturating_sub(1);
+        let last = nearest.len().saturating_sub(1);
+        let mut at = last;
         while let Some(before) = at.checked_sub(1)
             && let Some([left, right]) = nearest.get_mut(before..=at)
             && let Some([moved, place]) = obstacles.get_mut(before..=at)
             && *left > run.nearest
         {
             (*right, *place) = (*left, *moved);
-            (*left, *moved) = (run.nearest, obstacle);
             at = before;
+        }
+        if at < last
+            && let (Some(place), Some(distance)) = (obstacles.get_mut(at), nearest.get_mut(at))
+        {
+            (*place, *distance) = (obstacle, run.nearest);
         }
     }
 }
@@ -277,9 +282,10 @@ fn judge<const N: usize>(
         _ if reading.age > ring.max_age => Range::Invalid(Fault::Stale),
         Range::Echo(distance) if distance < Metres::ZERO => Range::Invalid(Fault::OutOfRange),
         Range::Echo(distance) if distance > ring.max_range => Range::Clear,
-        Range::Echo(distance) => Range::Echo(
-            (distance - speed.abs().over(reading.age.max(Seconds::ZERO))).max(Metres::ZERO),
-        ),
+        Range::Echo(distance) if reading.age <= Seconds::ZERO => Range::Echo(distance),
+        Range::Echo(distance) => {
+            Range::Echo((distance - speed.abs().over(reading.age)).max(Metres::ZERO))
+        }
         Range::Clear => Range::Clear,
     }
 }
