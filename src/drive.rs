@@ -1,6 +1,6 @@
 //! Twist to wheel speeds, within the robot's limits.
 
-use crate::integer::{quotient, ratio, saturate};
+use crate::integer::{proper_fraction, quotient, saturate};
 use crate::params::{Body, Limits};
 use crate::signals::{Twist, WheelCommand};
 use crate::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds};
@@ -47,7 +47,11 @@ pub fn drive(body: &Body, limits: &Limits, period: Seconds, last: Twist, wanted:
     let lowered = linear.unsigned_abs() < wanted.linear.bits().unsigned_abs()
         && i64::from(linear).wrapping_mul(wanted.linear.bits().into()) >= 0;
     let angular = if lowered {
-        ratio(wanted.angular.bits(), linear, wanted.linear.bits())
+        share(
+            wanted.angular.bits(),
+            linear.unsigned_abs(),
+            wanted.linear.bits().unsigned_abs(),
+        )
     } else {
         wanted.angular.bits()
     };
@@ -79,12 +83,19 @@ pub fn drive(body: &Body, limits: &Limits, period: Seconds, last: Twist, wanted:
 
 /// Scales both parts of the twist alike when `value` is beyond `limit`.
 fn shrink(twist: Twist, value: i32, limit: i32) -> Twist {
-    let value = value.saturating_abs();
+    let (value, limit) = (value.unsigned_abs(), limit.max(0).unsigned_abs());
     if value <= limit {
         return twist;
     }
     Twist {
-        linear: MetresPerSecond::from_bits(ratio(twist.linear.bits(), limit, value)),
-        angular: RadiansPerSecond::from_bits(ratio(twist.angular.bits(), limit, value)),
+        linear: MetresPerSecond::from_bits(share(twist.linear.bits(), limit, value)),
+        angular: RadiansPerSecond::from_bits(share(twist.angular.bits(), limit, value)),
     }
+}
+
+/// `value · least / most` for `least` ≤ `most`, within a step as long as `value` has no more than 23 bits. Never more
+/// than it should be, but for the rounding to nearest.
+fn share(value: i32, least: u32, most: u32) -> i32 {
+    let wide = i64::from(value).wrapping_mul(proper_fraction(least, most).into());
+    (wide.wrapping_add(1 << 23) >> 24) as i32
 }

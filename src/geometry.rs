@@ -1,6 +1,6 @@
 //! Points and poses in the plane, in fixed point. x forward (or east), y left (or north), counter-clockwise positive.
 
-use crate::integer::square_root;
+use crate::integer::{saturate, square_root};
 use crate::units::{Angle, Metres};
 use fixed::types::I2F30;
 
@@ -30,9 +30,9 @@ impl Point {
         root(self.norm_squared())
     }
 
-    /// Square of the length, in squares of a step; saturates. For comparing lengths without a root.
+    /// Square of the length, in squares of a step: 2^63 at most. For comparing lengths without a root.
     pub const fn norm_squared(self) -> u64 {
-        square(self.x).saturating_add(square(self.y))
+        square(self.x).wrapping_add(square(self.y))
     }
 
     /// Direction; 0 for the null vector.
@@ -87,10 +87,24 @@ impl Rotation {
     /// Fractional bits that [`along_and_beside`](Self::along_and_beside) has more than [`Metres`].
     pub const FRACTION: u32 = 30;
 
+    /// From cosine and sine, 30 fractional bits each.
+    pub(crate) const fn from_bits(cos: i32, sin: i32) -> Self {
+        Self {
+            cos: I2F30::from_bits(cos),
+            sin: I2F30::from_bits(sin),
+        }
+    }
+
+    /// How far `point` lies along this direction; rounded to nearest.
+    pub fn along(self, point: Point) -> Metres {
+        let (along, _) = self.along_and_beside(point);
+        Metres::from_bits(saturate(along.wrapping_add(1 << 29) >> 30))
+    }
+
     /// How far `point` lies along this direction, and to the left of it; unrounded. For comparisons.
     pub fn along_and_beside(self, point: Point) -> (i64, i64) {
-        let [x, y] = [point.x, point.y].map(|m| i64::from(m.bits()));
-        let [cos, sin] = [self.cos, self.sin].map(|r| i64::from(r.to_bits()));
+        let (x, y) = (i64::from(point.x.bits()), i64::from(point.y.bits()));
+        let (cos, sin) = (i64::from(self.cos.to_bits()), i64::from(self.sin.to_bits()));
         // Four products of 31 + 30 bits at most: two together fit.
         (
             x.wrapping_mul(cos).wrapping_add(y.wrapping_mul(sin)),
@@ -101,6 +115,37 @@ impl Rotation {
     /// The point at `distance` in this direction.
     pub fn ahead(self, distance: Metres) -> Point {
         Point::new(times(distance, self.cos), times(distance, self.sin))
+    }
+
+    /// Of the direction (x, y), a vector of this `length`, which is above zero and below 2^63. The direction is exact; the
+    /// result is as long as one within 2^-14.
+    pub(crate) const fn of_length(x: i64, y: i64, length: u64) -> Self {
+        // The length's top bit goes to the second place of the upper half; neither coordinate is longer.
+        let up = length.leading_zeros().saturating_sub(1);
+        let divisor = (length.wrapping_shl(up) >> 47) as u32;
+        // 2^31 by the upper 16 bits of it: 2^46 by the length.
+        let reciprocal = match (1u32 << 31).checked_div(divisor) {
+            Some(reciprocal) => reciprocal as i64,
+            None => 0,
+        };
+        let cos = (x.wrapping_shl(up) >> 32).wrapping_mul(reciprocal) >> 16;
+        let sin = (y.wrapping_shl(up) >> 32).wrapping_mul(reciprocal) >> 16;
+        Self::from_bits(cos as i32, sin as i32)
+    }
+
+    /// Both turns together.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let (c, s) = (i64::from(self.cos.to_bits()), i64::from(self.sin.to_bits()));
+        let (p, q) = (i64::from(other.cos.to_bits()), i64::from(other.sin.to_bits()));
+        Self::from_bits(
+            (c.wrapping_mul(p).wrapping_sub(s.wrapping_mul(q)) >> 30) as i32,
+            (s.wrapping_mul(p).wrapping_add(c.wrapping_mul(q)) >> 30) as i32,
+        )
+    }
+
+    /// The angle turned by.
+    pub fn angle(self) -> Angle {
+        Angle::of(self.cos.to_bits(), self.sin.to_bits())
     }
 
     /// A quarter turn further, counter-clockwise.
@@ -150,14 +195,41 @@ impl Pose {
         Self { at, heading }
     }
 
+    /// Its frame, ready to carry many points over.
+    pub fn frame(self) -> Frame {
+        Frame {
+            at: self.at,
+            forward: self.heading.rotation(),
+        }
+    }
+
     /// A point of the world in this pose's frame.
     pub fn to_body(self, world: Point) -> Point {
-        (world - self.at).rotated(-self.heading)
+        self.frame().to_body(world)
     }
 
     /// A point of this pose's frame in the world.
     pub fn to_world(self, body: Point) -> Point {
-        self.at + body.rotated(self.heading)
+        self.frame().to_world(body)
+    }
+}
+
+/// The frame of a pose: its place, and the rotation into its heading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    at: Point,
+    forward: Rotation,
+}
+
+impl Frame {
+    /// A point of the world in this frame.
+    pub fn to_body(self, world: Point) -> Point {
+        self.forward.back(world - self.at)
+    }
+
+    /// A point of this frame in the world.
+    pub fn to_world(self, body: Point) -> Point {
+        self.at + self.forward.forth(body)
     }
 }
 
@@ -169,8 +241,8 @@ pub(crate) fn times(length: Metres, ratio: I2F30) -> Metres {
 
 /// Square of a length, in squares of a step.
 pub(crate) const fn square(m: Metres) -> u64 {
-    let bits = m.bits().unsigned_abs() as u64;
-    bits.wrapping_mul(bits)
+    let bits = m.bits() as i64;
+    bits.wrapping_mul(bits) as u64
 }
 
 /// √(c² − a²) where it exists, else 0.

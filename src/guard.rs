@@ -1,7 +1,7 @@
 //! The last barrier before the wheels: the straight corridor ahead must be free over the braking distance. It sees
 //! echoes, knows nothing of paths, rules or modes, and may only slow or stop.
 
-use crate::geometry::{leg, root};
+use crate::geometry::{leg, root, square};
 use crate::integer::{quotient, saturate};
 use crate::params::Guard;
 use crate::signals::{Sensed, Twist};
@@ -44,17 +44,16 @@ pub fn guard(
     let faster = MetresPerSecond::from_bits(slowing.bits() >> 1);
     let under_way = (last.linear.max(MetresPerSecond::ZERO) + faster).over(latency);
     let free = (free - under_way).max(Metres::ZERO);
-    let distance = u64::from(free.bits().unsigned_abs());
-    let by_reaction = quotient(i64::from(free.bits()) << 23, reaction.bits());
+    let room = i64::from(free.bits()) << 23;
     let braking = u64::from(params.braking.to_bits().unsigned_abs());
-    let by_braking = root(braking.saturating_mul(distance));
-    let limit = by_reaction
-        .map_or(i32::MAX, saturate)
-        .min(by_braking.bits());
-    let limit = MetresPerSecond::from_bits(limit);
-    if wanted.linear <= limit {
+    let squared = braking.saturating_mul(free.bits().unsigned_abs().into());
+    // Products say whether the speed is within both limits; a division and a root are for one that is not.
+    let needs = i64::from(wanted.linear.bits()).wrapping_mul(reaction.bits().into());
+    if needs <= room && square(Metres::from_bits(wanted.linear.bits())) <= squared {
         return (wanted, false);
     }
+    let by_reaction = quotient(room, reaction.bits()).map_or(i32::MAX, saturate);
+    let limit = MetresPerSecond::from_bits(by_reaction.min(root(squared).bits()));
     let guarded = Twist {
         linear: limit,
         angular: wanted.angular,

@@ -2,7 +2,9 @@
 
 mod cursor;
 mod law;
+mod local;
 mod path;
+mod preview;
 mod store;
 
 pub use cursor::{Cursor, Fix, LOOK};

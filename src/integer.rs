@@ -3,12 +3,12 @@
 
 /// Narrows to `i32`, saturating.
 pub(crate) const fn saturate(wide: i64) -> i32 {
-    if wide > i32::MAX as i64 {
-        i32::MAX
-    } else if wide < i32::MIN as i64 {
-        i32::MIN
+    let (upper, lower) = ((wide >> 32) as i32, wide as i32);
+    // It fits if the upper half only repeats the sign.
+    if upper == lower >> 31 {
+        lower
     } else {
-        wide as i32
+        (upper >> 31) ^ i32::MAX
     }
 }
 
@@ -70,16 +70,49 @@ pub(crate) fn quotient(value: i64, divisor: i32) -> Option<i64> {
     })
 }
 
+/// A number by which is divided again and again: worked out once, a quotient is a product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reciprocal {
+    factor: u32,
+    shift: u32,
+}
+
+impl Reciprocal {
+    /// For quotients `numerator / divisor`, numerators from 2^29 to 2^30. A divisor of 0 counts as 1, one beyond 2^31 as
+    /// that.
+    pub(crate) const fn new(numerator: u32, divisor: u32) -> Self {
+        let divisor = match divisor {
+            0 => 1,
+            1..=0x7fff_ffff => divisor,
+            _ => 0x7fff_ffff,
+        };
+        // The divisor is from 2^shift to below twice that: the factor has 29 bits at least.
+        let shift = 31u32.wrapping_sub(divisor.leading_zeros());
+        let factor = match divide((numerator as u64).wrapping_shl(shift), divisor) {
+            Some(factor) => factor as u32,
+            None => 0,
+        };
+        Self { factor, shift }
+    }
+
+    /// `numerator · value / divisor`, rounded down; off by no more than 2^-29 of itself, and one.
+    pub(crate) const fn times(self, value: i32) -> i64 {
+        (value as i64)
+            .wrapping_mul(self.factor as i64)
+            .wrapping_shr(self.shift)
+    }
+}
+
 /// Square root, rounded down.
 ///
 /// Zimmermann's Karatsuba square root with one level (*INRIA RR-3805*, 1999): the root of the upper half, then 16 more
 /// bits by a division. Two 32-bit divisions in all, where `u64::isqrt` takes one of 64 bits.
 pub(crate) fn square_root(square: u64) -> u32 {
-    let Some(top) = square.checked_ilog2() else {
+    if square == 0 {
         return 0;
-    };
+    }
     // The upper half becomes at least 2^30, its root at least 2^15.
-    let shift = 31u32.wrapping_sub(top >> 1);
+    let shift = square.leading_zeros() >> 1;
     let wide = square.wrapping_shl(shift.wrapping_mul(2));
     let upper = (wide >> 32) as u32;
     let root = root_of_upper(upper);
@@ -99,13 +132,13 @@ fn root_of_upper(upper: u32) -> u32 {
     let (root, reciprocal) = ROOTS.get(index).copied().unwrap_or((u16::MAX, 0));
     let guess = u32::from(root);
     let excess = upper.wrapping_sub(guess.wrapping_mul(guess)) as i32;
-    // The guess is within 2^-8: |excess| < 2^24, what it corrects is < 2^8, and what the step leaves is < 1.
-    let step = (excess >> 5).wrapping_mul(reciprocal.into()) >> 23;
-    let root = guess.wrapping_add_signed(step).min(0xffff);
-    let root = root.wrapping_sub((root.wrapping_mul(root) > upper).into());
-    let next = root.wrapping_add(1);
-    let short = next <= 0xffff && next.wrapping_mul(next) <= upper;
-    root.wrapping_add(short.into())
+    // The guess is within 2^-8: |excess| < 2^24, what it corrects is < 2^8. The step leaves less than 0.7 either way; what
+    // is taken off it makes the root too small, by one at most, and never too large.
+    const LESS: i32 = 7 << 20;
+    let correction = (excess >> 5).wrapping_mul(reciprocal.into());
+    let root = guess.wrapping_add_signed(correction.wrapping_sub(LESS) >> 23);
+    let left = upper.wrapping_sub(root.wrapping_mul(root));
+    root.wrapping_add((left > root.wrapping_mul(2)).into())
 }
 
 /// Upper eight bits of the smallest number in [`ROOTS`].
@@ -158,8 +191,9 @@ pub(crate) const fn arctangent(x: i32, y: i32) -> i32 {
     if y < 0 { whole.wrapping_neg() } else { whole }
 }
 
-/// `least / most` with 24 fractional bits, for `least` ≤ `most`; 0 if both are.
-const fn proper_fraction(least: u32, most: u32) -> u32 {
+/// `least / most` with 24 fractional bits, for `least` ≤ `most`, short by 2 steps at most; 0 if both are.
+#[inline(always)]
+pub(crate) const fn proper_fraction(least: u32, most: u32) -> u32 {
     let shift = most.leading_zeros();
     let (least, most) = (least.wrapping_shl(shift), most.wrapping_shl(shift));
     // By the divisor's upper half, plus one so that nothing comes out too large: the first digit is short by 2 at most.

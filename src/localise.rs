@@ -86,17 +86,17 @@ impl Localiser {
 /// Chord of an arc of length `arc` that turns by `turned`: arc·(1 − t²/24 + t⁴/1920), good to 4e-6 up to a radian;
 /// beyond two radians in one tick the series is held.
 fn chord(arc: i64, turned: i32) -> i64 {
-    let radians =
-        i64::from(Angle::from_bits(turned).radians().to_bits()).clamp(-(2 << 16), 2 << 16);
-    // 32 fractional bits, at most 4; the products below stay under 2^57.
-    let square = radians.wrapping_mul(radians);
-    let fourth = (square >> 16).wrapping_mul(square >> 16);
-    // 2^26/24 and 2^26/1920.
-    let shortening = square.wrapping_mul(2_796_203) >> 26;
-    let shortening = shortening.wrapping_sub(fourth.wrapping_mul(34_953) >> 26);
-    arc.wrapping_sub(arc.wrapping_mul(shortening) >> 32)
+    let radians = Angle::from_bits(turned).radians().to_bits();
+    let radians = radians.unsigned_abs().min(2 << 16);
+    // 16 fractional bits, at most 4 and 16; the shortening has 32, and is below 2^30.
+    let square = ((u64::from(radians)).wrapping_mul(radians.into()) >> 16) as u32;
+    let fourth = ((u64::from(square)).wrapping_mul(square.into()) >> 16) as u32;
+    // 2^32/24 and 2^32/1920.
+    let share = |part: u32, of: u32| (u64::from(part).wrapping_mul(of.into()) >> 16) as u32;
+    let shortening = share(square, 178_956_971).wrapping_sub(share(fourth, 2_236_962));
+    arc.wrapping_sub(arc.wrapping_mul(shortening.into()) >> 32)
 }
 
 fn narrow(wide: i64) -> Metres {
-    Metres::from_bits(saturate(wide.saturating_add(1 << 15) >> 16))
+    Metres::from_bits(saturate((wide >> 15).wrapping_add(1) >> 1))
 }

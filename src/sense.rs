@@ -7,7 +7,7 @@ mod circle;
 mod scan;
 
 pub use circle::{CircleFit, fit_circle};
-pub use scan::sense_ranges;
+pub use scan::{Beams, sense_ranges};
 
 use crate::ports::{Fault, WheelCounts};
 use crate::signals::Travel;

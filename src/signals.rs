@@ -54,22 +54,39 @@ impl Obstacle {
         }
     }
 
-    /// The edge of the unfeasible region on the side of a `turn`: the bearing and half the angle together, by one
-    /// arctangent.
-    pub fn unfeasible_edge(&self, grown: Metres, turn: Turn) -> Angle {
+    /// All that deciding and avoiding ask of the obstacle that is passed, `grown` the growth of its radius.
+    pub fn sight(&self, grown: Metres) -> Sight {
+        Sight {
+            bearing: self.bearing(),
+            distance: self.centre.norm(),
+            half_angle: self.unfeasible_half_angle(grown),
+        }
+    }
+
+    /// The edge of the unfeasible region on the side of a `turn`: the bearing and half the angle together, without an
+    /// angle in between. Across the centre's direction when the robot is inside the grown circle.
+    pub fn unfeasible_edge(&self, grown: Metres, turn: Turn) -> Rotation {
         let reach = self.radius + grown;
-        let beyond = self.centre.norm_squared().checked_sub(square(reach));
-        let leg = beyond.map_or(Metres::ZERO, root);
-        let [x, y] = [self.centre.x, self.centre.y].map(|m| i64::from(m.bits()));
-        let leg = i64::from(leg.bits());
+        let squared = self.centre.norm_squared();
+        let beyond = squared.checked_sub(square(reach)).filter(|beyond| *beyond > 0);
+        let Some(beyond) = beyond else {
+            let centre = self.bearing().rotation();
+            return match turn {
+                Turn::Left => centre.left(),
+                Turn::Right => centre.right(),
+            };
+        };
+        let (x, y) = (i64::from(self.centre.x.bits()), i64::from(self.centre.y.bits()));
+        let leg = i64::from(root(beyond).bits());
         let aside = match turn {
             Turn::Left => i64::from(reach.bits()),
             Turn::Right => i64::from(reach.bits()).wrapping_neg(),
         };
         // The centre's vector turned by asin(reach / distance), as long as distance²: below 2^63.
-        Angle::of_wide(
+        Rotation::of_length(
             x.wrapping_mul(leg).wrapping_sub(y.wrapping_mul(aside)),
             y.wrapping_mul(leg).wrapping_add(x.wrapping_mul(aside)),
+            squared,
         )
     }
 
@@ -77,9 +94,25 @@ impl Obstacle {
     /// `grown`, stands on that ray.
     pub fn covers(&self, way: Rotation, grown: Metres) -> bool {
         let (along, beside) = way.along_and_beside(self.centre);
-        let reach = i64::from((self.radius + grown).bits());
-        along > 0 && beside.saturating_abs() < reach << Rotation::FRACTION
+        let reach = i64::from((self.radius + grown).bits()) << Rotation::FRACTION;
+        along > 0 && beside < reach && beside > reach.wrapping_neg()
     }
+
+    /// [`covers`](Self::covers) for the direction straight ahead.
+    pub fn stands_ahead(&self, grown: Metres) -> bool {
+        self.centre.x > Metres::ZERO && self.centre.y.abs() < self.radius + grown
+    }
+}
+
+/// How an obstacle lies before the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sight {
+    /// Direction of its centre, body frame.
+    pub bearing: Angle,
+    /// Distance of its centre.
+    pub distance: Metres,
+    /// Half the angle of its unfeasible region.
+    pub half_angle: Angle,
 }
 
 /// What the sensors say this tick.
@@ -148,7 +181,7 @@ pub struct Guidance {
     pub remaining: Metres,
     /// Times the start of a closed path was passed.
     pub laps: u16,
-    /// Speed that bends, corners and the end ahead allow.
+    /// Speed that bends, corners and the end ahead allow, the robot's top speed at most.
     pub speed_limit: MetresPerSecond,
     /// The path's end is reached.
     pub at_end: bool,

@@ -1,9 +1,11 @@
 //! The higher level: which sub-task runs. Thresholds, dwell and side commitment are assumed; the chapter gives none,
 //! and with a single threshold robots chatter.
 
-use crate::geometry::{Point, Pose, Rotation, square};
+use crate::geometry::{Frame, Point, Pose, square};
 use crate::params::{Avoider, Supervisor};
-use crate::signals::{Decision, Guidance, Obstacle, Sensed, StopReason, Travel, Turn};
+use crate::signals::{
+    Decision, Guidance, Obstacle, Sensed, Sight, StopReason, Travel, Turn,
+};
 use crate::units::{Angle, Metres};
 
 /// The mode of the higher level.
@@ -57,6 +59,8 @@ pub struct SupervisorState {
     /// Ticks since both are back.
     healthy: u16,
     held: Option<Held>,
+    /// Of the one held, while it is being passed.
+    sight: Sight,
 }
 
 impl Default for SupervisorState {
@@ -75,7 +79,7 @@ pub struct Situation<'a> {
     /// Odometry of this tick.
     pub travel: Travel,
     /// Believed pose.
-    pub pose: Pose,
+    pub pose: Frame,
     /// Relation to the path.
     pub guidance: &'a Guidance,
 }
@@ -91,12 +95,22 @@ impl SupervisorState {
             lost: 0,
             healthy: 0,
             held: None,
+            sight: Sight {
+                bearing: Angle::ZERO,
+                distance: Metres::ZERO,
+                half_angle: Angle::ZERO,
+            },
         }
     }
 
     /// Current mode.
     pub fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// Of the obstacle that the last decision avoids.
+    pub fn sight(&self) -> Sight {
+        self.sight
     }
 
     /// Decides for one tick.
@@ -110,23 +124,29 @@ impl SupervisorState {
         self.track(params, now);
         let before = self.mode;
         let reason = self.stops(params, now);
+        let threat = threat(params, avoider, now);
         self.mode = match (self.mode, reason) {
             (_, Some(reason)) => Mode::Stop(reason),
             (Mode::Stop(_), None) if self.resumes(params, now) => Mode::Follow,
-            (Mode::Follow, None) => match self.enters_avoid(params, avoider, now) {
+            (Mode::Follow, None) => match self.enters_avoid(params, now, threat) {
                 Some(held) => {
                     self.held = Some(held);
                     Mode::Avoid
                 }
                 None => Mode::Follow,
             },
-            (Mode::Avoid, None) if self.leaves_avoid(params, avoider, now) => Mode::Follow,
+            (stopped @ Mode::Stop(_), None) => stopped,
             (Mode::Avoid, None) => {
-                self.retarget(params, avoider, now);
+                self.retarget(params, now, threat);
                 Mode::Avoid
             }
-            (stopped @ Mode::Stop(_), None) => stopped,
         };
+        if let (Mode::Avoid, Some(held)) = (self.mode, &self.held) {
+            self.sight = held.obstacle.sight(now.robot_radius + avoider.margin);
+            if before == Mode::Avoid && self.leaves_avoid(params, now, threat) {
+                self.mode = Mode::Follow;
+            }
+        }
         let changed = core::mem::discriminant(&before) != core::mem::discriminant(&self.mode);
         self.dwelt = if matches!(before, Mode::Stop(_)) && changed {
             // What happened while standing does not delay the next decision.
@@ -217,13 +237,13 @@ impl SupervisorState {
     pub fn enters_avoid(
         &self,
         params: &Supervisor,
-        avoider: &Avoider,
         now: &Situation<'_>,
+        threat: Option<&Obstacle>,
     ) -> Option<Held> {
         if self.dwelt < params.dwell {
             return None;
         }
-        let obstacle = threat(params, avoider, now)?;
+        let obstacle = *threat?;
         let centre = now.pose.to_world(obstacle.centre);
         let side = match &self.held {
             Some(last) if (last.centre - centre).norm_squared() <= square(params.same) => last.side,
@@ -238,27 +258,30 @@ impl SupervisorState {
     }
 
     /// Avoid → Follow: the obstacle is beyond `exit` or out of sight for longer than patience, or the way that
-    /// guidance wants clears its unfeasible region on the committed side; and no other obstacle is in the way.
+    /// guidance wants clears its unfeasible region on the committed side; and there is no threat.
     pub fn leaves_avoid(
         &self,
         params: &Supervisor,
-        avoider: &Avoider,
         now: &Situation<'_>,
+        threat: Option<&Obstacle>,
     ) -> bool {
         let Some(held) = &self.held else { return true };
-        if self.dwelt < params.dwell {
+        if self.dwelt < params.dwell || threat.is_some() {
             return false;
         }
-        let grown = now.robot_radius + avoider.margin;
+        let Sight {
+            bearing,
+            distance,
+            half_angle,
+        } = self.sight;
         let mirror = |angle: Angle| match held.side {
             Turn::Right => angle,
             Turn::Left => -angle,
         };
-        let needed = held.obstacle.unfeasible_half_angle(grown) + params.clear;
-        let bearing = held.obstacle.bearing();
+        let needed = half_angle + params.clear;
         let way = mirror(bearing - now.guidance.heading_error);
         let heading = mirror(bearing);
-        let far = held.obstacle.free_distance(now.robot_radius) > params.exit;
+        let far = distance - held.obstacle.radius - now.robot_radius > params.exit;
         let gone = held.unseen > params.patience;
         let clears = |angle: Angle| angle.abs().bits() > needed.bits();
         let passed = way.is_left() && clears(way);
@@ -266,40 +289,48 @@ impl SupervisorState {
         let away = way.abs().bits() > Angle::QUARTER.bits();
         // The way may also have swung clear on the other side, if the robot already points there.
         let other_side = !way.is_left() && clears(way) && !heading.is_left() && clears(heading);
-        (far || gone || passed || away || other_side) && threat(params, avoider, now).is_none()
+        far || gone || passed || away || other_side
     }
 
     /// Avoid → Avoid: another obstacle in the way takes the held one's place once that is passed or it is the nearer;
     /// the side stays.
-    pub fn retarget(&mut self, params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) {
-        let Some(held) = &mut self.held else { return };
-        let Some(obstacle) = threat(params, avoider, now) else {
+    pub fn retarget(
+        &mut self,
+        params: &Supervisor,
+        now: &Situation<'_>,
+        threat: Option<&Obstacle>,
+    ) {
+        let (Some(held), Some(obstacle)) = (&mut self.held, threat) else {
             return;
         };
         // Both in the body frame of this tick.
         if (obstacle.centre - held.obstacle.centre).norm_squared() > square(params.same) {
             held.centre = now.pose.to_world(obstacle.centre);
-            held.obstacle = obstacle;
+            held.obstacle = *obstacle;
             held.unseen = 0;
         }
     }
 }
 
-/// The nearest obstacle in the way, if any. Half the margin is enough here: what is steered around with the whole
+/// A threat: the nearest obstacle in the way, if any. Half the margin is enough here: what is steered around with the whole
 /// margin does not come into the way again by a noisy estimate.
-fn threat(params: &Supervisor, avoider: &Avoider, now: &Situation<'_>) -> Option<Obstacle> {
+pub fn threat<'a>(
+    params: &Supervisor,
+    avoider: &Avoider,
+    now: &Situation<'a>,
+) -> Option<&'a Obstacle> {
     let grown = now.robot_radius + Metres::from_bits(avoider.margin.bits() >> 1);
     if now.sensed.obstacles.is_empty() {
         return None;
     }
     let way = now.guidance.heading_error.rotation();
     let near = Metres::from_bits(params.enter.bits() >> 1);
-    now.sensed.obstacles.iter().copied().find(|obstacle| {
+    // What stands beyond the path's end is nobody's business.
+    let [far, near] = [params.enter, near].map(|limit| limit.min(now.guidance.remaining));
+    now.sensed.obstacles.iter().find(|obstacle| {
         let within = |limit| obstacle.is_nearer(now.robot_radius, limit);
-        // What stands beyond the path's end is nobody's business.
-        within(now.guidance.remaining)
-            && ((within(params.enter) && obstacle.covers(way, grown))
-                || (within(near) && obstacle.covers(Rotation::NONE, grown)))
+        within(far)
+            && (obstacle.covers(way, grown) || (obstacle.stands_ahead(grown) && within(near)))
     })
 }
 

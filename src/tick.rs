@@ -10,7 +10,7 @@ use crate::params::{ParamError, Params};
 use crate::ports::{
     Fault, Ports, RangeReading, RangeSensors, Side, WheelCounts, WheelDrive, WheelEncoders,
 };
-use crate::sense::{Odometer, sense_ranges};
+use crate::sense::{Beams, Odometer, sense_ranges};
 use crate::signals::{Behaviour, Decision, Sensed, TickRecord, Travel, Twist};
 use crate::supervisor::{Situation, SupervisorState};
 use crate::units::MetresPerSecond;
@@ -51,6 +51,8 @@ impl Probe for () {
 #[derive(Clone, Debug)]
 pub struct Robot<const N: usize> {
     params: Params<N>,
+    // From the settings, before the first tick.
+    beams: Option<Beams<N>>,
     // Of the settings, made where they are checked.
     fine: FineController,
     // Scratch of one tick. Here, because a microcontroller's stack is small.
@@ -77,6 +79,7 @@ impl<const N: usize> Robot<N> {
             localiser: Localiser::new(&params.body, start),
             fine,
             params,
+            beams: None,
             readings: [RangeReading::NEVER_SEEN; N],
             sensed: Sensed::new(),
             odometer: Odometer::new(),
@@ -104,6 +107,7 @@ impl<const N: usize> Robot<N> {
     /// The first setting that the robot cannot be driven with; then nothing is forgotten.
     pub fn restart(&mut self, start: Pose) -> Result<(), ParamError> {
         self.params.check()?;
+        self.beams = None;
         self.fine = FineController::new(&self.params.follower, &self.params.limits);
         self.localiser = Localiser::new(&self.params.body, start);
         self.odometer = Odometer::default();
@@ -184,7 +188,7 @@ impl<const N: usize> Robot<N> {
     // The stages, in two functions that know no ports: so they are in an image once, and the stack that sensing needs is
     // free again when the others begin.
 
-    /// Sense, localise.
+    /// Sense.
     fn sense<P: Probe>(
         &mut self,
         counts: Result<WheelCounts, Fault>,
@@ -194,17 +198,19 @@ impl<const N: usize> Robot<N> {
         let p = &self.params;
         let travel = self.odometer.travel(counts);
         let readings = self.readings.get(..mounted).unwrap_or_default();
-        sense_ranges(&p.ring, readings, self.last.linear, &mut self.sensed);
+        let beams = self.beams.get_or_insert_with(|| Beams::new(&p.ring));
+        let speed = self.last.linear;
+        sense_ranges(&p.ring, beams, readings, speed, &mut self.sensed);
         probe.mark(Stage::Sense);
-        self.localiser.advance(&p.body, p.integrator, travel);
-        probe.mark(Stage::Localise);
         travel
     }
 
-    /// Guide, supervise, behave, guard, drive.
+    /// Localise, guide, supervise, behave, guard, drive.
     fn decide<P: Probe>(&mut self, path: &Path<'_>, travel: Travel, probe: &mut P) -> TickRecord {
         let p = &self.params;
-        let (sensed, pose) = (&self.sensed, self.localiser.pose());
+        let pose = self.localiser.advance(&p.body, p.integrator, travel);
+        probe.mark(Stage::Localise);
+        let sensed = &self.sensed;
         let timing = (p.period, p.latency);
         let guidance = guide(
             &p.follower,
@@ -220,7 +226,7 @@ impl<const N: usize> Robot<N> {
             robot_radius: p.body.radius,
             sensed,
             travel,
-            pose,
+            pose: pose.frame(),
             guidance: &guidance,
         };
         let decision = self
@@ -246,6 +252,7 @@ impl<const N: usize> Robot<N> {
                 sensed,
                 *side,
                 obstacle,
+                self.supervisor.sight(),
             ),
             Decision::Stop(_) => Behaviour::default(),
         };

@@ -260,16 +260,6 @@ impl Angle {
     pub fn of(x: i32, y: i32) -> Self {
         Self(arctangent(x, y))
     }
-
-    /// Like [`Angle::of`] for coordinates of any length.
-    pub(crate) const fn of_wide(x: i64, y: i64) -> Self {
-        let longest = x.unsigned_abs() | y.unsigned_abs();
-        let excess = 33u32.saturating_sub(longest.leading_zeros());
-        Self(arctangent(
-            x.wrapping_shr(excess) as i32,
-            y.wrapping_shr(excess) as i32,
-        ))
-    }
 }
 
 impl Add for Angle {

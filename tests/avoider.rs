@@ -70,6 +70,7 @@ fn run(settings: &Avoider, side: Turn, held: &Obstacle, others: &[Obstacle]) -> 
         &sensed(others),
         side,
         held,
+        held.sight(metres(ROBOT) + settings.margin),
     )
 }
 
@@ -427,6 +428,7 @@ proptest! {
             ..base
         };
         let limits = Limits { speed: MetresPerSecond::from_bits(speed), ..limits() };
-        let _ = avoid(&settings, &limits, robot, &sensed(&others), side, &held);
+        let sight = held.sight(robot + settings.margin);
+        let _ = avoid(&settings, &limits, robot, &sensed(&others), side, &held, sight);
     }
 }

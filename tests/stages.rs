@@ -9,7 +9,7 @@ use fuzzypilot::guard::guard;
 use fuzzypilot::localise::Localiser;
 use fuzzypilot::params::{Body, Guard, Integrator, Limits, Mount, RingGeometry};
 use fuzzypilot::ports::{Fault, Range, RangeReading, WheelCounts};
-use fuzzypilot::sense::{Odometer, sense_ranges};
+use fuzzypilot::sense::{Beams, Odometer, sense_ranges};
 use fuzzypilot::signals::{MAX_OBSTACLES, Sensed, Travel, Twist};
 use fuzzypilot::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond, Seconds};
 use proptest::prelude::*;
@@ -865,8 +865,9 @@ fn sense_at<const N: usize>(
 ) -> Sensed {
     let mut sensed = Sensed::default();
     let before = [RangeReading::fresh(Range::Echo(metres(0.5))); N];
-    sense_ranges(ring, &before, speed, &mut sensed);
-    sense_ranges(ring, readings, speed, &mut sensed);
+    let beams = Beams::new(ring);
+    sense_ranges(ring, &beams, &before, speed, &mut sensed);
+    sense_ranges(ring, &beams, readings, speed, &mut sensed);
     sensed
 }
 

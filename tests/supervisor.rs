@@ -6,7 +6,7 @@ use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::params::{Avoider, Supervisor};
 use fuzzypilot::ports::Fault;
 use fuzzypilot::signals::{Decision, Guidance, Obstacle, Sensed, StopReason, Travel, Turn};
-use fuzzypilot::supervisor::{Held, Mode, Situation, SupervisorState, inside_rule};
+use fuzzypilot::supervisor::{Held, Mode, Situation, SupervisorState, inside_rule, threat};
 use fuzzypilot::tables::coarse::{CoarseSet, SpeedInput};
 use fuzzypilot::units::{Angle, Metres, PerMetre};
 use proptest::prelude::*;
@@ -107,7 +107,7 @@ impl Scene {
                 robot_radius: RADIUS,
                 sensed: &sensed,
                 travel: self.travel,
-                pose: self.pose,
+                pose: self.pose.frame(),
                 guidance: &self.guidance,
             },
         )
@@ -119,7 +119,7 @@ impl Scene {
             robot_radius: RADIUS,
             sensed: &sensed,
             travel: self.travel,
-            pose: self.pose,
+            pose: self.pose.frame(),
             guidance: &self.guidance,
         };
         self.state.decide(params, &avoider(), &now)
@@ -134,11 +134,15 @@ impl Scene {
     }
 
     fn enters(&self) -> Option<Held> {
-        self.ask(|state, now| state.enters_avoid(&params(), &avoider(), now))
+        self.ask(|state, now| {
+            state.enters_avoid(&params(), now, threat(&params(), &avoider(), now))
+        })
     }
 
     fn leaves(&self) -> bool {
-        self.ask(|state, now| state.leaves_avoid(&params(), &avoider(), now))
+        self.ask(|state, now| {
+            state.leaves_avoid(&params(), now, threat(&params(), &avoider(), now))
+        })
     }
 
     fn stops(&self) -> Option<StopReason> {

@@ -14,17 +14,25 @@
 //! edge of the region.
 
 use super::follower::rate_of;
-use crate::geometry::square;
-use crate::integer::{ratio, saturate};
+use crate::fuzzy::{Position, Twin};
+use crate::geometry::{Rotation, square};
+use crate::integer::proper_fraction;
 use crate::params::{Avoider, Limits};
-use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Turn, Twist};
+use crate::signals::{
+    Behaviour, Controller, Obstacle, RuleTrace, Sensed, Sight, Turn, Twist,
+};
+use crate::tables::coarse::{Nested, SpeedShare, nested};
 use crate::units::{Angle, Metres, MetresPerSecond};
-use fixed::types::I16F16;
 
 /// Least angle by which a heading must clear the unfeasible region: keeps the strict ">" of the chapter after rounding.
 const EDGE: Angle = Angle::deg("0.5");
 
-/// Desired motion while passing `held` on its committed side.
+/// Turns by [`EDGE`] to the left and to the right: cos 0.5° and sin 0.5° with 30 fractional bits.
+const PAST_LEFT: Rotation = Rotation::from_bits(1_073_700_939, 9_370_046);
+const PAST_RIGHT: Rotation = Rotation::from_bits(1_073_700_939, -9_370_046);
+
+/// Desired motion while passing `held` on its committed side. `sight` is that of `held`, grown by the robot's radius and
+/// the margin.
 pub fn avoid(
     avoider: &Avoider,
     limits: &Limits,
@@ -32,6 +40,7 @@ pub fn avoid(
     sensed: &Sensed,
     side: Turn,
     held: &Obstacle,
+    sight: Sight,
 ) -> Behaviour {
     // In the mirrored frame the committed turn is always to the right: positive Δθ.
     let mirror = |angle: Angle| match side {
@@ -39,21 +48,20 @@ pub fn avoid(
         Turn::Left => -angle,
     };
     let grown = robot_radius + avoider.margin;
-    let theta = mirror(held.bearing());
-    let distance = held.centre.norm();
+    let theta = mirror(sight.bearing);
+    let distance = sight.distance;
     let free = (distance - held.radius - robot_radius).max(Metres::ZERO);
-    let share = ratio(free.bits(), 1 << 16, avoider.range.bits());
-    let (s, theta_degrees) = (I16F16::from_bits(share), theta.degrees());
-    let out = avoider
-        .tables
-        .tables()
-        .evaluate(s, theta_degrees, avoider.speed_input);
+    // Beyond the range the tables see no difference.
+    let near = free.min(avoider.range).bits().unsigned_abs();
+    let share = proper_fraction(near, avoider.range.bits().unsigned_abs());
+    let s = Position::from_bits(share.min(0xff_ffff) << 8);
+    let twin = avoider.tables.twin();
+    let Nested { turn, pace } = nested(twin, s, on_axis(theta), avoider.speed_input);
 
     // Wanted bearing of the obstacle in the next tick, mirrored frame: θ + Δθ.
-    let half = held.unfeasible_half_angle(grown);
-    let deflection = Angle::from_degrees(I16F16::from_num(out.deflection));
+    let half = sight.half_angle;
     // Past half a turn the sum stays there: wrapped, an obstacle behind would seem to be on the other side.
-    let fuzzy = Angle::from_bits(theta.bits().saturating_add(deflection.bits()));
+    let fuzzy = Angle::from_bits(theta.bits().saturating_add(deflected(turn.first).bits()));
     let edge = half + EDGE;
     let wanted = if fuzzy.bits() < edge.bits() {
         edge
@@ -62,8 +70,9 @@ pub fn avoid(
             edge.bits().saturating_add(avoider.overshoot.bits()),
         ))
     };
-    // A right turn by wanted − θ, as a direction in the mirrored body frame (left positive there, too).
-    let mut direction = theta - wanted;
+    // A right turn by wanted − θ in the mirrored frame.
+    let mut turned = mirror(theta - wanted);
+    let mut way = turned.rotation();
     let behind = distance + held.radius;
     let matters = |other: &Obstacle| {
         let distance = other.centre.norm_squared();
@@ -71,30 +80,53 @@ pub fn avoid(
         let sooner = distance < square(behind + other.radius);
         sooner && other.is_nearer(robot_radius, avoider.range)
     };
+    let mut pushed = false;
     // Every push goes to the right, past one obstacle for good: as many pushes as obstacles reach the end.
     for _ in 0..sensed.obstacles.len() {
-        let way = mirror(direction).rotation();
         let blocks = |other: &&Obstacle| other.covers(way, grown) && matters(other);
         let Some(other) = sensed.obstacles.iter().find(blocks) else {
             break;
         };
-        direction = mirror(other.unfeasible_edge(grown, side)) - EDGE;
+        way = other.unfeasible_edge(grown, side).and(match side {
+            Turn::Right => PAST_RIGHT,
+            Turn::Left => PAST_LEFT,
+        });
+        pushed = true;
     }
-    let turn = mirror(direction);
-    let speed = i64::from(limits.speed.bits()).wrapping_mul(out.speed.to_bits().into()) >> 14;
+    if pushed {
+        turned = way.angle();
+    }
+    // A share of 14 fractional bits and the engine's more, at most one.
+    let speed = i64::from(limits.speed.bits()).wrapping_mul(pace.second.into())
+        >> (SpeedShare::FRAC_NBITS + Twin::<3, 3>::EXTRA_BITS);
+    let ([deflection_output, _], [_, speed_output]) = (turn.rounded(), pace.rounded());
     Behaviour {
         twist: Twist {
-            linear: MetresPerSecond::from_bits(saturate(speed)),
-            angular: rate_of(turn, avoider.deflection_rate),
+            linear: MetresPerSecond::from_bits(speed as i32),
+            angular: rate_of(turned, avoider.deflection_rate),
         },
         trace: RuleTrace {
             controller: Controller::Coarse,
-            distance_input: s.to_bits(),
-            angle_input: theta_degrees.to_bits(),
-            speed_output: out.speed.to_bits(),
-            deflection_output: out.deflection.to_bits(),
-            rules: out.deflection_rules.rules(),
-            speed_rules: out.speed_rules.rules(),
+            // 24 fractional bits to 16, rounded.
+            distance_input: (share.wrapping_add(1 << 7) >> 8) as i32,
+            angle_input: theta.degrees().to_bits(),
+            speed_output,
+            deflection_output,
+            rules: turn.activation.rules(),
+            speed_rules: pace.activation.rules(),
         },
     }
+}
+
+/// The position of θ on its axis: a quarter turn to either side.
+fn on_axis(theta: Angle) -> Position {
+    let quarter = Angle::QUARTER.bits();
+    let limited = theta.bits().clamp(-quarter, quarter - 1);
+    Position::from_bits(limited.wrapping_add(quarter).cast_unsigned() << 1)
+}
+
+/// Δθ as the tables give it, 2^-20° a step, as an angle: 512 / 45 times as many, here with 27 fractional bits.
+fn deflected(wide: i32) -> Angle {
+    const GAIN: i64 = ((512 << 28) / 45 + 1) / 2;
+    Angle::from_bits((i64::from(wide).wrapping_mul(GAIN) >> 27) as i32)
 }

@@ -1,26 +1,36 @@
 //! The cursor: how far along the path the robot is. It moves forward only, and looks at no more than [`LOOK`] pieces
 //! in one tick, so a path that crosses itself or comes back past itself cannot confuse it.
 
-use super::path::Path;
+use super::local::Local;
+use super::path::{Path, next};
+use super::preview::{Allowed, Preview};
 use crate::geometry::{Point, Pose, square};
-use crate::units::{Angle, Metres, MetresPerSecond, PerMetre};
+use crate::units::{Metres, MetresPerSecond, PerMetre};
 use fixed::types::I16F16;
 
 /// The most pieces that one tick looks at. Points closer than a thirty-second of what the robot drives in a tick
 /// leave the cursor behind; space them wider.
 pub const LOOK: usize = 32;
 
-/// A jump of the tangent by more than this is a corner.
-const CORNER: Angle = Angle::deg("15");
-
-/// Progress along a path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Progress along a path, and what was seen of it ahead. A new path needs a new cursor.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cursor {
     piece: usize,
     along: Metres,
     /// Path length before the current piece, this lap.
     base: Metres,
+    /// The same since the start, wrapping.
+    driven: i32,
     laps: u16,
+    /// The current piece, once it was looked at.
+    local: Option<Local>,
+    preview: Preview,
+}
+
+impl Default for Cursor {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 /// Where the cursor stands after a move.
@@ -47,40 +57,54 @@ impl Cursor {
             piece: 0,
             along: Metres::ZERO,
             base: Metres::ZERO,
+            driven: 0,
             laps: 0,
+            local: None,
+            preview: Preview::new(),
         }
+    }
+
+    /// Whether it still stands at the start of the path.
+    pub fn is_at_start(&self) -> bool {
+        self.piece == 0 && self.along == Metres::ZERO && self.laps == 0
     }
 
     /// Moves on to the place of the path nearest to `place`, at most `reach` metres ahead and never back.
     pub fn advance(&mut self, path: &Path<'_>, place: Point, reach: Metres) -> Fix {
         let mut budget = reach.max(Metres::ZERO);
+        let first = || Local::new(&path.piece(self.piece));
+        let local = self.local.get_or_insert_with(first);
         for _ in 0..LOOK {
-            let piece = path.piece(self.piece);
-            let length = piece.length();
-            let nearest = piece.project(place, self.along);
+            let length = local.length;
+            let nearest = local.project(place, self.along);
             let along = nearest.min(self.along + budget).max(self.along);
-            let last = !path.is_closed() && self.piece.saturating_add(1) >= path.count();
-            if along < length || last {
+            let next = next(path, self.piece).filter(|_| along >= length);
+            let Some(next) = next else {
                 self.along = along.min(length);
                 break;
-            }
+            };
             budget = budget - (length - self.along);
             self.along = Metres::ZERO;
-            self.piece = self.piece.saturating_add(1);
             self.base = self.base + length;
-            if self.piece >= path.count() {
-                self.piece = 0;
+            self.driven = self.driven.wrapping_add(length.bits());
+            if next == 0 {
                 self.base = Metres::ZERO;
                 self.laps = self.laps.saturating_add(1);
             }
+            self.piece = next;
+            self.preview.reached(next, self.driven);
+            *local = Local::new(&path.piece(next));
         }
-        let (foot, forward) = path.piece(self.piece).frame(self.along);
-        let offset = place - foot.at;
+        let (foot, forward) = local.frame(self.along);
+        let Point {
+            x: ahead,
+            y: cross_track,
+        } = forward.back(place - foot.at);
         let progress = self.base + self.along;
         Fix {
             foot,
-            cross_track: forward.back(offset).y,
-            distance: offset.norm(),
+            cross_track,
+            distance: length(ahead, cross_track),
             progress,
             remaining: if path.is_closed() {
                 Metres::MAX
@@ -94,11 +118,16 @@ impl Cursor {
     /// Curvature `lead` metres ahead of the cursor.
     pub fn curvature_ahead(&self, path: &Path<'_>, lead: Metres) -> PerMetre {
         let mut left = self.along + lead.max(Metres::ZERO);
+        if let Some(local) = &self.local
+            && left <= local.length
+        {
+            return local.curvature;
+        }
         let mut index = self.piece;
         for _ in 0..LOOK {
             let piece = path.piece(index);
             let length = piece.length();
-            let Some(next) = Self::next(path, index).filter(|_| left > length) else {
+            let Some(next) = next(path, index).filter(|_| left > length) else {
                 return piece.curvature();
             };
             left = left - length;
@@ -109,48 +138,34 @@ impl Cursor {
 
     /// Square of the speed that the path ahead allows, m²/s² with 32 fractional bits: what braking at `braking` m/s²
     /// still brings down to √(`lateral`/κ) in every bend, to `corner` at every corner of more than 15° and to rest at
-    /// an open end. Looks as far as braking from `top` needs, over [`LOOK`] pieces at most.
+    /// an open end. Looks as far as braking from `top` needs. In one tick a few pieces are looked at anew; where that is
+    /// not as far as it needs, the rest may be an end, too.
     pub fn speed_limit_squared(
-        &self,
+        &mut self,
         path: &Path<'_>,
         top: MetresPerSecond,
         braking: I16F16,
         lateral: I16F16,
         corner: Metres,
     ) -> u64 {
-        let brake = |from: u64, distance: Metres| {
-            let gain = u64::from(braking.to_bits().unsigned_abs())
-                .saturating_mul(u64::from(distance.max(Metres::ZERO).bits().unsigned_abs()));
-            from.saturating_add(gain.saturating_mul(2))
+        let here = self.driven.wrapping_add(self.along.bits());
+        let allowed = Allowed {
+            top,
+            braking,
+            lateral,
+            corner,
         };
-        let mut limit = u64::MAX;
-        let mut ahead = Metres::ZERO - self.along;
-        let mut index = self.piece;
-        for _ in 0..LOOK {
-            let piece = path.piece(index);
-            let length = piece.length();
-            limit = limit.min(brake(piece.bend_speed_squared(length, lateral), ahead));
-            ahead = ahead + length;
-            let Some(next) = Self::next(path, index) else {
-                return limit.min(brake(0, ahead));
-            };
-            let jump = path.piece(next).start_heading() - piece.end_heading();
-            if jump.abs().bits() > CORNER.bits() {
-                limit = limit.min(brake(square(corner), ahead));
-            }
-            if brake(0, ahead) > square(Metres::from_bits(top.bits())) {
-                break;
-            }
-            index = next;
-        }
-        limit
+        self.preview.limit_squared(path, here, &allowed)
     }
+}
 
-    fn next(path: &Path<'_>, index: usize) -> Option<usize> {
-        let next = index.saturating_add(1);
-        match next < path.count() {
-            true => Some(next),
-            false => path.is_closed().then_some(0),
-        }
+/// Length of the vector from the foot. There it is at a right angle to the path, except at an end: nearly always it is
+/// |beside|, and no root is needed.
+fn length(ahead: Metres, beside: Metres) -> Metres {
+    // √(a² + b²) is less than a²/2b more than b.
+    if square(ahead) <= u64::from(beside.bits().unsigned_abs()) << 1 {
+        beside.abs()
+    } else {
+        Point::new(ahead, beside).norm()
     }
 }

@@ -9,7 +9,7 @@
 
 use super::cursor::Cursor;
 use super::path::Path;
-use crate::geometry::{Point, Pose, root};
+use crate::geometry::{Point, Pose, root, square};
 use crate::integer::saturate;
 use crate::params::{Follower, Law, Limits};
 use crate::signals::{Guidance, Twist};
@@ -33,7 +33,7 @@ pub fn guide(
     // From a standing start the whole reach may be used to find the path. Later the nearest place runs ahead of the
     // robot only where that is far inside a bend, and there it must not run through the path.
     let driven = last.linear.abs().over(period);
-    let reach = if *cursor == Cursor::default() {
+    let reach = if cursor.is_at_start() {
         follower.reach
     } else {
         follower
@@ -80,7 +80,12 @@ pub fn guide(
         progress: fix.progress,
         remaining: fix.remaining,
         laps: fix.laps,
-        speed_limit: MetresPerSecond::from_bits(root(squared).bits()),
+        // Most of the way the robot's own top speed is allowed: then there is no root.
+        speed_limit: if squared >= square(Metres::from_bits(limits.speed.bits())) {
+            limits.speed
+        } else {
+            MetresPerSecond::from_bits(root(squared).bits())
+        },
         at_end: ends && !elsewhere,
         missed_end: elsewhere && follower.law == Law::Paper,
     }

@@ -1,7 +1,8 @@
 //! Paths: a borrowed slice of discrete points or of lines and arcs, open or closed. The slice may be a `static`, or a
 //! `heapless::Vec` that was filled at run time.
 
-use crate::geometry::{Point, Pose, Rotation, square};
+use super::local::{Local, along_arc};
+use crate::geometry::{Point, Pose};
 use crate::integer::{divide, quotient, saturate};
 use crate::units::{Angle, Metres, PerMetre};
 use fixed::types::I16F16;
@@ -73,39 +74,8 @@ impl Segment {
 
     /// Place and tangent at `along` metres from the start, limited to the segment.
     pub fn at(&self, along: Metres) -> Pose {
-        self.frame(along.max(Metres::ZERO).min(self.length())).0
-    }
-
-    /// Like [`Segment::at`] for a place on the segment, with the rotation into the tangent's direction.
-    fn frame(&self, along: Metres) -> (Pose, Rotation) {
-        match *self {
-            Self::Line { start, .. } => {
-                let forward = start.heading.rotation();
-                let at = start.at + forward.ahead(along);
-                (Pose::new(at, start.heading), forward)
-            }
-            Self::Arc {
-                centre,
-                radius,
-                from,
-                sweep,
-            } => {
-                let swept = angle_along(radius, along);
-                let out = if sweep >= 0 {
-                    from + swept
-                } else {
-                    from - swept
-                };
-                let outward = out.rotation();
-                let forward = if sweep >= 0 {
-                    outward.left()
-                } else {
-                    outward.right()
-                };
-                let at = centre + outward.ahead(radius);
-                (Pose::new(at, tangent(out, sweep)), forward)
-            }
-        }
+        let local = Local::new(&Piece::Segment(*self));
+        local.frame(along.max(Metres::ZERO).min(local.length)).0
     }
 
     /// First point and tangent.
@@ -125,7 +95,7 @@ impl Segment {
             } => {
                 // From the sweep itself: exact, where the way over the length would round.
                 let out = from + Angle::from_bits(sweep.wrapping_shl(8));
-                Pose::new(centre + Point::polar(radius, out), tangent(out, sweep))
+                Pose::new(centre + Point::polar(radius, out), tangent(out, sweep >= 0))
             }
         }
     }
@@ -146,28 +116,22 @@ impl Segment {
     }
 }
 
-fn tangent(out: Angle, sweep: i32) -> Angle {
-    if sweep >= 0 {
+/// Tangent where the direction from the centre is `out`.
+pub(super) fn tangent(out: Angle, left: bool) -> Angle {
+    if left {
         out + Angle::QUARTER
     } else {
         out - Angle::QUARTER
     }
 }
 
-/// Arc length of `turns` (32 fractional bits, at most one turn either way) at `radius`.
-fn along_arc(radius: Metres, turns: i64) -> Metres {
-    // 2π with 20 fractional bits. The products stay below 2^62 for every radius.
-    const TURN: i64 = 6_588_397;
-    let turn_metres = ((turns >> 2).wrapping_mul(i64::from(radius.bits()))) >> 22;
-    Metres::from_bits(saturate(turn_metres.wrapping_mul(TURN) >> 28))
-}
-
-/// Angle that an arc of length `along` subtends at `radius`; wraps.
-fn angle_along(radius: Metres, along: Metres) -> Angle {
-    // along / (2π · radius) turns; 2^32/2π · along / radius.
-    const TURN: i64 = 683_565_276;
-    let wide = i64::from(along.bits()).wrapping_mul(TURN);
-    Angle::from_bits(quotient(wide, radius.bits()).unwrap_or(0) as i32)
+/// The piece after `index`, if there is one.
+pub(super) fn next(path: &Path<'_>, index: usize) -> Option<usize> {
+    let next = index.saturating_add(1);
+    match next < path.count() {
+        true => Some(next),
+        false => path.is_closed().then_some(0),
+    }
 }
 
 /// What the path is made of.
@@ -350,7 +314,7 @@ impl<'a> Path<'a> {
     }
 }
 
-/// One piece, ready to project on.
+/// One piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Piece {
     /// Between two discrete points. The tangent goes from the one's ζ to the other's, linearly along the chord.
@@ -374,43 +338,12 @@ impl Piece {
         }
     }
 
-    /// Place and tangent at `along`, which is on the piece, with the rotation into the tangent's direction.
-    pub(crate) fn frame(&self, along: Metres) -> (Pose, Rotation) {
-        match *self {
-            Self::Segment(segment) => segment.frame(along),
-            Self::Chord { from, to } => {
-                let chord = to.at - from.at;
-                let length = chord.norm();
-                let along = along.max(Metres::ZERO).min(length);
-                let turn = to.heading - from.heading;
-                // Share of the chord, 30 fractional bits.
-                let share = quotient(i64::from(along.bits()) << 30, length.bits()).unwrap_or(0);
-                let part = |whole: i32| saturate(i64::from(whole).wrapping_mul(share) >> 30);
-                let place = from.at
-                    + Point::new(
-                        Metres::from_bits(part(chord.x.bits())),
-                        Metres::from_bits(part(chord.y.bits())),
-                    );
-                let curvature = self.curvature().bits();
-                // The arc through both points bulges from the chord by κ·along·(length − along)/2, to its right when
-                // it turns left.
-                let rest = length - along;
-                let bulge = i64::from(along.bits()).wrapping_mul(i64::from(rest.bits())) >> 16;
-                let bulge = bulge.saturating_mul(i64::from(curvature)) >> 17;
-                let sideways = chord.direction() - Angle::QUARTER;
-                let place = place + Point::polar(Metres::from_bits(saturate(bulge)), sideways);
-                let heading = from.heading + Angle::from_bits(part(turn.bits()));
-                (Pose::new(place, heading), heading.rotation())
-            }
-        }
-    }
-
     /// Tangent at the start.
     pub(crate) fn start_heading(&self) -> Angle {
         match *self {
             Self::Chord { from, .. } => from.heading,
             Self::Segment(Segment::Line { start, .. }) => start.heading,
-            Self::Segment(Segment::Arc { from, sweep, .. }) => tangent(from, sweep),
+            Self::Segment(Segment::Arc { from, sweep, .. }) => tangent(from, sweep >= 0),
         }
     }
 
@@ -420,7 +353,7 @@ impl Piece {
             Self::Chord { to, .. } => to.heading,
             Self::Segment(Segment::Line { start, .. }) => start.heading,
             Self::Segment(Segment::Arc { from, sweep, .. }) => {
-                tangent(from + Angle::from_bits(sweep.wrapping_shl(8)), sweep)
+                tangent(from + Angle::from_bits(sweep.wrapping_shl(8)), sweep >= 0)
             }
         }
     }
@@ -450,38 +383,6 @@ impl Piece {
                 let turn = to.heading - from.heading;
                 let radians = i64::from(turn.radians().to_bits()) << 16;
                 PerMetre::from_bits(quotient(radians, length.bits()).map_or(0, saturate))
-            }
-        }
-    }
-
-    /// Path length from the piece's start to the place on its line or circle that is nearest to `place`; below zero
-    /// before the start, above the length behind the end. On a circle the solution within half a turn of `hint` is
-    /// meant, and nearer to the centre than a quarter of the radius it is `hint` itself.
-    pub(crate) fn project(&self, place: Point, hint: Metres) -> Metres {
-        match *self {
-            Self::Chord { from, to } => {
-                let (chord, offset) = (to.at - from.at, place - from.at);
-                let product =
-                    |a: Metres, b: Metres| i64::from(a.bits()).wrapping_mul(b.bits().into());
-                let dot = product(chord.x, offset.x).saturating_add(product(chord.y, offset.y));
-                Metres::from_bits(quotient(dot, chord.norm().bits()).map_or(0, saturate))
-            }
-            Self::Segment(Segment::Line { start, .. }) => start.to_body(place).x,
-            Self::Segment(Segment::Arc {
-                centre,
-                radius,
-                from,
-                sweep,
-            }) => {
-                let offset = place - centre;
-                // Near the centre the nearest place says nothing and turns about with every step: stay.
-                if offset.norm_squared() < square(radius) >> 4 {
-                    return hint;
-                }
-                let out = offset.direction();
-                let swept = if sweep >= 0 { out - from } else { from - out };
-                let ahead = swept - angle_along(radius, hint);
-                hint + along_arc(radius, i64::from(ahead.bits()))
             }
         }
     }

@@ -10,6 +10,33 @@ use crate::units::{Angle, Metres, MetresPerSecond, Seconds};
 use fixed::types::I2F30;
 use heapless::Vec;
 
+/// What of a ring's geometry every scan needs, worked out once.
+#[derive(Clone, Debug)]
+pub struct Beams<const N: usize> {
+    /// Where each sensor looks.
+    directions: [Rotation; N],
+    /// Width of the first cone, and the sine of its half. All cones are alike as a rule.
+    cone: (Angle, I2F30),
+    /// Sine of half the angle between two sensors.
+    space: I2F30,
+}
+
+impl<const N: usize> Beams<N> {
+    /// Of this ring.
+    pub fn new(ring: &RingGeometry<N>) -> Self {
+        let mut directions = [Rotation::NONE; N];
+        for (direction, mount) in directions.iter_mut().zip(&ring.mounts) {
+            *direction = mount.pose.heading.rotation();
+        }
+        let width = ring.mounts.first().map_or(Angle::ZERO, |m| m.width);
+        Self {
+            directions,
+            cone: (width, half_sine(width)),
+            space: half_sine(pitch(ring)),
+        }
+    }
+}
+
 /// Judges every reading, places the echoes in the body frame and makes circles of them; what `sensed` held is gone.
 ///
 /// An echo that is `age` old is drawn nearer by `speed · age`, the worst that the robot's own motion can have done.
@@ -18,6 +45,7 @@ use heapless::Vec;
 #[inline(never)]
 pub fn sense_ranges<const N: usize>(
     ring: &RingGeometry<N>,
+    beams: &Beams<N>,
     readings: &[RangeReading],
     speed: MetresPerSecond,
     sensed: &mut Sensed,
@@ -29,18 +57,14 @@ pub fn sense_ranges<const N: usize>(
     sensed.nearest = Metres::MAX;
     let mut finds = Finds {
         ring,
-        space: None,
+        space: beams.space,
         nearest: Vec::new(),
     };
     let gap = square(ring.gap);
     let near = |a: Point, b: Point| (a - b).norm_squared() <= gap;
-    // All cones are alike as a rule.
-    let mut cone = (Angle::ZERO, I2F30::ZERO);
     // The run at hand, and the one that began at the first sensor: in a closed ring the last may go on in it.
-    let (mut open, mut first, mut begin) = (None::<Run>, None::<Run>, true);
-    let mounts = ring.mounts.get(..MAX_BEAMS).unwrap_or(&ring.mounts);
-    for (mount, reading) in mounts.iter().zip(readings) {
-        let at_begin = core::mem::take(&mut begin);
+    let (mut open, mut first) = (None::<Run>, None::<Run>);
+    for (index, reading) in readings.iter().enumerate().take(MAX_BEAMS) {
         let range = judge(ring, reading, speed);
         if !matches!(range, Range::Invalid(_)) {
             sensed.valid = sensed.valid.saturating_add(1);
@@ -52,7 +76,10 @@ pub fn sense_ranges<const N: usize>(
             }
             continue;
         };
-        let direction = mount.pose.heading.rotation();
+        let (mount, direction) = (ring.mounts.get(index), beams.directions.get(index));
+        let (Some(mount), Some(direction)) = (mount, direction) else {
+            break;
+        };
         let point = mount.pose.at + direction.ahead(distance);
         // What sits at the centre needs no root.
         let from_centre = if mount.pose.at == Point::default() {
@@ -61,11 +88,12 @@ pub fn sense_ranges<const N: usize>(
             point.norm()
         };
         sensed.nearest = sensed.nearest.min(from_centre);
-        if mount.width != cone.0 {
-            cone = (mount.width, half_sine(mount.width));
-        }
-        let spread = times(distance, cone.1);
-        let index = sensed.echoes.len();
+        let half_sine = match mount.width == beams.cone.0 {
+            true => beams.cone.1,
+            false => half_sine(mount.width),
+        };
+        let spread = times(distance, half_sine);
+        let start = sensed.echoes.len();
         // Both have room for every beam that is looked at.
         let _ = sensed.echoes.push(point);
         let _ = sensed.spreads.push(spread);
@@ -81,12 +109,12 @@ pub fn sense_ranges<const N: usize>(
                     finds.close(run, &mut first, sensed);
                 }
                 open = Some(Run {
-                    start: index,
+                    start,
                     count: 1,
-                    at_begin,
+                    at_begin: index == 0,
                     first: point,
                     last: point,
-                    direction,
+                    direction: *direction,
                     nearest: from_centre,
                     spread,
                 });
@@ -143,8 +171,8 @@ struct Run {
 /// The obstacles found so far, the one with the nearest echo first.
 struct Finds<'a, const N: usize> {
     ring: &'a RingGeometry<N>,
-    /// Sine of half the angle between two sensors, once it was needed.
-    space: Option<I2F30>,
+    /// Sine of half the angle between two sensors.
+    space: I2F30,
     /// Distance of the obstacles' nearest echoes from the body's centre.
     nearest: Vec<Metres, MAX_OBSTACLES>,
 }
@@ -169,18 +197,23 @@ impl<const N: usize> Finds<'_, N> {
             obstacles.pop();
             nearest.pop();
         }
-        let obstacle = circle_of(self.ring, &mut self.space, run, &sensed.echoes);
-        // There is room now. What lies farther moves up.
+        let obstacle = circle_of(self.ring, self.space, run, &sensed.echoes);
+        // There is room now. What lies farther moves up, and the new one is written once more only if something did.
         let _ = (obstacles.push(obstacle), nearest.push(run.nearest));
-        let mut at = nearest.len().saturating_sub(1);
+        let last = nearest.len().saturating_sub(1);
+        let mut at = last;
         while let Some(before) = at.checked_sub(1)
             && let Some([left, right]) = nearest.get_mut(before..=at)
             && let Some([moved, place]) = obstacles.get_mut(before..=at)
             && *left > run.nearest
         {
             (*right, *place) = (*left, *moved);
-            (*left, *moved) = (run.nearest, obstacle);
             at = before;
+        }
+        if at < last
+            && let (Some(place), Some(distance)) = (obstacles.get_mut(at), nearest.get_mut(at))
+        {
+            (*place, *distance) = (obstacle, run.nearest);
         }
     }
 }
@@ -193,10 +226,10 @@ impl<const N: usize> Finds<'_, N> {
 /// half a cone's width, whichever is more; its surface through the nearest. A single echo's disc stands behind it
 /// on its beam.
 ///
-/// `space` keeps the sine of half the angle between two sensors, once it was needed.
+/// `space` is the sine of half the angle between two sensors.
 fn circle_of<const N: usize>(
     ring: &RingGeometry<N>,
-    space: &mut Option<I2F30>,
+    space: I2F30,
     run: &Run,
     echoes: &[Point],
 ) -> Obstacle {
@@ -209,7 +242,6 @@ fn circle_of<const N: usize>(
     };
     if run.count <= 1 {
         // One echo shows no space to its neighbours: there it is the ring's.
-        let space = *space.get_or_insert_with(|| half_sine(pitch(ring)));
         let half_width = times(run.nearest, space).max(run.spread);
         let radius = half_width.max(least).min(most);
         let centre = run.first + run.direction.ahead(radius);
@@ -250,9 +282,10 @@ fn judge<const N: usize>(
         _ if reading.age > ring.max_age => Range::Invalid(Fault::Stale),
         Range::Echo(distance) if distance < Metres::ZERO => Range::Invalid(Fault::OutOfRange),
         Range::Echo(distance) if distance > ring.max_range => Range::Clear,
-        Range::Echo(distance) => Range::Echo(
-            (distance - speed.abs().over(reading.age.max(Seconds::ZERO))).max(Metres::ZERO),
-        ),
+        Range::Echo(distance) if reading.age <= Seconds::ZERO => Range::Echo(distance),
+        Range::Echo(distance) => {
+            Range::Echo((distance - speed.abs().over(reading.age)).max(Metres::ZERO))
+        }
         Range::Clear => Range::Clear,
     }
 }

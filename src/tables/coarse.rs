@@ -7,7 +7,10 @@
 //! All peaks are assumed (the figure is lost): inputs evenly spaced, crossing at ½. s is taken as a share of the
 //! detection range, so one set of tables serves every range.
 
-use crate::fuzzy::{Activation, Antecedents, Consequents, Partition, RuleTable, Term};
+use super::fine::turned;
+use crate::fuzzy::{
+    Activation, Antecedents, Consequents, Partition, Position, RuleTable, Term, Twin, TwinTable,
+};
 use fixed::FixedI16;
 use fixed::types::extra::U14;
 use fixed::types::{I8F8, I16F16};
@@ -96,6 +99,43 @@ pub struct CoarseTables {
     pub deflection: RuleTable<3, 3, Deflection>,
     /// Second controller: (s, Δθ or θ) to speed.
     pub speed: RuleTable<3, 3, SpeedShare>,
+    /// Both, for evaluation. What a robot carries; the rest is for people.
+    pub twin: &'static CoarseTwin,
+}
+
+/// Deflection and speed of all rules, packed.
+pub type CoarseTwin = TwinTable<3, 3, 2>;
+
+/// Both controllers' results, before they are rounded to their formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Nested {
+    /// The first one's evaluation: Δθ is its first output, [`Twin::EXTRA_BITS`] finer than [`Deflection`].
+    pub turn: Twin<3, 3>,
+    /// The second one's: the speed is its second output, as much finer than [`SpeedShare`].
+    pub pace: Twin<3, 3>,
+}
+
+/// Equations 7.4 and 7.5, nested, on positions of the axes: what half of a [`Twin`] is not asked for is not computed.
+#[inline(always)]
+pub fn nested(twin: &CoarseTwin, s: Position, theta: Position, input: SpeedInput) -> Nested {
+    let turn = twin.evaluate(s, theta);
+    let angle = match input {
+        SpeedInput::Deflection => deflected(turn.first),
+        SpeedInput::Bearing => theta,
+    };
+    Nested {
+        turn,
+        pace: twin.evaluate(s, angle),
+    }
+}
+
+/// The position of a Δθ, 2^-20° a step, on the angles' axis: 180° are 2^32 steps of it.
+#[inline(always)]
+fn deflected(wide: i32) -> Position {
+    // 1024 / 45 with 27 fractional bits, rounded down: no Δθ reaches past the axis' end.
+    const GAIN: u64 = (1024 << 27) / 45;
+    let from_start = wide.wrapping_add(90 << 20).cast_unsigned();
+    Position::from_bits((u64::from(from_start).wrapping_mul(GAIN) >> 27) as u32)
 }
 
 /// What one evaluation of a [`CoarseTables`] gives.
@@ -114,29 +154,35 @@ pub struct CoarseOutput {
 impl CoarseTables {
     /// Equations 7.4 and 7.5, nested: `s` as a share of the detection range on `[0, 1]`, `theta` in degrees on
     /// `[-90, 90]`, chapter's sign; both saturate.
-    #[inline]
     pub fn evaluate(&self, s: I16F16, theta: I16F16, input: SpeedInput) -> CoarseOutput {
-        let deflection_rules = self.antecedents.activate(s, theta);
-        let deflection = self.deflection.defuzzify(&deflection_rules);
-        let angle = match input {
-            SpeedInput::Deflection => I16F16::from_num(deflection),
-            SpeedInput::Bearing => theta,
+        let share = match s.to_bits() {
+            ..=0 => Position::FIRST,
+            share @ 1..0x1_0000 => Position::from_bits(share.cast_unsigned() << 16),
+            _ => Position::LAST,
         };
-        let speed_rules = self.antecedents.activate(s, angle);
+        let theta = turned(theta.saturating_add(I16F16::lit("90")));
+        let Nested { turn, pace } = nested(self.twin, share, theta, input);
+        let ([deflection, _], [_, speed]) = (turn.rounded(), pace.rounded());
         CoarseOutput {
-            deflection,
-            speed: self.speed.defuzzify(&speed_rules),
-            deflection_rules,
-            speed_rules,
+            deflection: Deflection::from_bits(deflection),
+            speed: SpeedShare::from_bits(speed),
+            deflection_rules: turn.activation,
+            speed_rules: pace.activation,
         }
     }
 }
+
+// Statics of their own, so that an image without people in it holds nothing else.
+static CORRECTED_TWIN: CoarseTwin =
+    TwinTable::new(&ANTECEDENTS, &DEFLECTION_CORRECTED, &SPEED_7_4);
+static PRINTED_TWIN: CoarseTwin = TwinTable::new(&ANTECEDENTS, &DEFLECTION_PRINTED, &SPEED_7_4);
 
 /// Tables 7.3 and 7.4, erratum mended.
 pub static CORRECTED: CoarseTables = CoarseTables {
     antecedents: ANTECEDENTS,
     deflection: DEFLECTION_CORRECTED,
     speed: SPEED_7_4,
+    twin: &CORRECTED_TWIN,
 };
 
 /// Tables 7.3 and 7.4 as printed.
@@ -144,6 +190,7 @@ pub static PRINTED: CoarseTables = CoarseTables {
     antecedents: ANTECEDENTS,
     deflection: DEFLECTION_PRINTED,
     speed: SPEED_7_4,
+    twin: &PRINTED_TWIN,
 };
 
 /// Which Table 7.3 to use.
@@ -163,6 +210,14 @@ impl CoarseSet {
         match self {
             Self::Corrected => &CORRECTED,
             Self::Printed => &PRINTED,
+        }
+    }
+
+    /// The tables packed for evaluation.
+    pub const fn twin(self) -> &'static CoarseTwin {
+        match self {
+            Self::Corrected => &CORRECTED_TWIN,
+            Self::Printed => &PRINTED_TWIN,
         }
     }
 }

@@ -182,8 +182,8 @@ impl FineTables {
     }
 }
 
-/// φ's position: 180° are the axis, 2^32 steps, and a count of 2^-16 is 2^14 / 45 of them.
-fn turned(phi: I16F16) -> Position {
+/// Position on an axis of 180° = 2^32 steps, from its start: a count of 2^-16° is 2^14 / 45 of them.
+pub(super) fn turned(phi: I16F16) -> Position {
     let count = phi.to_bits().clamp(0, 180 << 16) as u32;
     let of_2_26 = ((count << 8) + 22) / 45;
     match of_2_26 {
