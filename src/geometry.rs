@@ -136,7 +136,10 @@ impl Rotation {
     /// Both turns together.
     pub(crate) fn and(self, other: Self) -> Self {
         let (c, s) = (i64::from(self.cos.to_bits()), i64::from(self.sin.to_bits()));
-        let (p, q) = (i64::from(other.cos.to_bits()), i64::from(other.sin.to_bits()));
+        let (p, q) = (
+            i64::from(other.cos.to_bits()),
+            i64::from(other.sin.to_bits()),
+        );
         Self::from_bits(
             (c.wrapping_mul(p).wrapping_sub(s.wrapping_mul(q)) >> 30) as i32,
             (s.wrapping_mul(p).wrapping_add(c.wrapping_mul(q)) >> 30) as i32,

@@ -68,7 +68,9 @@ impl Obstacle {
     pub fn unfeasible_edge(&self, grown: Metres, turn: Turn) -> Rotation {
         let reach = self.radius + grown;
         let squared = self.centre.norm_squared();
-        let beyond = squared.checked_sub(square(reach)).filter(|beyond| *beyond > 0);
+        let beyond = squared
+            .checked_sub(square(reach))
+            .filter(|beyond| *beyond > 0);
         let Some(beyond) = beyond else {
             let centre = self.bearing().rotation();
             return match turn {
@@ -76,7 +78,10 @@ impl Obstacle {
                 Turn::Right => centre.right(),
             };
         };
-        let (x, y) = (i64::from(self.centre.x.bits()), i64::from(self.centre.y.bits()));
+        let (x, y) = (
+            i64::from(self.centre.x.bits()),
+            i64::from(self.centre.y.bits()),
+        );
         let leg = i64::from(root(beyond).bits());
         let aside = match turn {
             Turn::Left => i64::from(reach.bits()),

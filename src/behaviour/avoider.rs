@@ -18,9 +18,7 @@ use crate::fuzzy::{Position, Twin};
 use crate::geometry::{Rotation, square};
 use crate::integer::proper_fraction;
 use crate::params::{Avoider, Limits};
-use crate::signals::{
-    Behaviour, Controller, Obstacle, RuleTrace, Sensed, Sight, Turn, Twist,
-};
+use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Sight, Turn, Twist};
 use crate::tables::coarse::{Nested, SpeedShare, nested};
 use crate::units::{Angle, Metres, MetresPerSecond};
 
