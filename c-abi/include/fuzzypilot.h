@@ -50,7 +50,7 @@
 #define FP_SENSORS_MAX 64
 
 /// Words of an fp_robot.
-#define FP_ROBOT_WORDS 390
+#define FP_ROBOT_WORDS 490
 
 /// The most segments of a path.
 #define FP_SEGMENTS_MAX 64

@@ -15,7 +15,7 @@ use fuzzypilot::units::{Angle, Metres};
 /// The most range sensors of a robot.
 pub const FP_SENSORS_MAX: usize = 64;
 /// Words of an fp_robot.
-pub const FP_ROBOT_WORDS: usize = 390;
+pub const FP_ROBOT_WORDS: usize = 490;
 
 /// A place and a heading, world.
 #[repr(C)]
