@@ -60,8 +60,11 @@ pub fn expected(made: &Made, inputs: &[Vec<i32>]) -> Vec<Vec<i32>> {
     })
 }
 
+/// A system, what it is asked, and what it has to answer.
+pub type Asked<'a> = (&'a Made, Vec<Vec<i32>>, Vec<Vec<i32>>);
+
 /// Runs a program that answers for one system after another, and compares.
-pub fn compare(program: &Path, systems: &[(&Made, Vec<Vec<i32>>, Vec<Vec<i32>>)]) {
+pub fn compare(program: &Path, systems: &[Asked<'_>]) {
     let mut asked = Vec::new();
     for (_, inputs, _) in systems {
         asked.push(inputs.len() as i32);
