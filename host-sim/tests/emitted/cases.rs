@@ -1,6 +1,7 @@
 //! What the compiled code is asked, and what it has to answer: integers on standard input and output.
 
 use super::systems::Made;
+use fuzzypilot::fuzzy::system::Piece;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::io::Write;
@@ -20,7 +21,7 @@ pub fn inputs(made: &Made, count: usize) -> Vec<Vec<i32>> {
                 .terms
                 .iter()
                 .flat_map(|(_, pieces)| pieces)
-                .map(|piece| piece.from());
+                .map(Piece::from);
             let mut corners: Vec<i32> = pieces
                 .chain(input.range)
                 .flat_map(|x| [x.saturating_sub(1), x, x.saturating_add(1)])
