@@ -1,6 +1,7 @@
 //! What the compiled code is asked, and what it has to answer: integers on standard input and output.
 
 use super::systems::Made;
+use fuzzypilot::fuzzy::system::Piece;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::io::Write;
@@ -20,7 +21,7 @@ pub fn inputs(made: &Made, count: usize) -> Vec<Vec<i32>> {
                 .terms
                 .iter()
                 .flat_map(|(_, pieces)| pieces)
-                .map(|piece| piece.from());
+                .map(Piece::from);
             let mut corners: Vec<i32> = pieces
                 .chain(input.range)
                 .flat_map(|x| [x.saturating_sub(1), x, x.saturating_add(1)])
@@ -60,8 +61,11 @@ pub fn expected(made: &Made, inputs: &[Vec<i32>]) -> Vec<Vec<i32>> {
     })
 }
 
+/// A system, what it is asked, and what it has to answer.
+pub type Asked<'a> = (&'a Made, Vec<Vec<i32>>, Vec<Vec<i32>>);
+
 /// Runs a program that answers for one system after another, and compares.
-pub fn compare(program: &Path, systems: &[(&Made, Vec<Vec<i32>>, Vec<Vec<i32>>)]) {
+pub fn compare(program: &Path, systems: &[Asked<'_>]) {
     let mut asked = Vec::new();
     for (_, inputs, _) in systems {
         asked.push(inputs.len() as i32);

@@ -40,7 +40,7 @@ pub struct Table {
     pub places: Vec<usize>,
     /// The term that each rule concludes, a row of the table a row.
     pub cells: Vec<Vec<usize>>,
-    /// What an output may be off the design's own, in its unit: see [`Table::error`].
+    /// What an output may be off the design's own, in its unit, before the rounding of the output itself.
     pub error: f64,
 }
 
