@@ -68,7 +68,9 @@ impl Obstacle {
     pub fn unfeasible_edge(&self, grown: Metres, turn: Turn) -> Rotation {
         let reach = self.radius + grown;
         let squared = self.centre.norm_squared();
-        let beyond = squared.checked_sub(square(reach)).filter(|beyond| *beyond > 0);
+        let beyond = squared
+            .checked_sub(square(reach))
+            .filter(|beyond| *beyond > 0);
         let Some(beyond) = beyond else {
             let centre = self.bearing().rotation();
             return match turn {
@@ -76,12 +78,15 @@ impl Obstacle {
                 Turn::Right => centre.right(),
             };
         };
-        let (x, y) = (i64::from(self.centre.x.bits()), i64::from(self.centre.y.bits()));
+        let (x, y) = (
+            i64::from(self.centre.x.bits()),
+            i64::from(self.centre.y.bits()),
+        );
         let leg = i64::from(root(beyond).bits());
-        let aside = match turn {
-            Turn::Left => i64::from(reach.bits()),
-            Turn::Right => i64::from(reach.bits()).wrapping_neg(),
-        };
+        let aside = i64::from(match turn {
+            Turn::Left => reach.bits(),
+            Turn::Right => reach.bits().wrapping_neg(),
+        });
         // The centre's vector turned by asin(reach / distance), as long as distance²: below 2^63.
         Rotation::of_length(
             x.wrapping_mul(leg).wrapping_sub(y.wrapping_mul(aside)),

@@ -3,9 +3,7 @@
 
 use crate::geometry::{Frame, Point, Pose, square};
 use crate::params::{Avoider, Supervisor};
-use crate::signals::{
-    Decision, Guidance, Obstacle, Sensed, Sight, StopReason, Travel, Turn,
-};
+use crate::signals::{Decision, Guidance, Obstacle, Sensed, Sight, StopReason, Travel, Turn};
 use crate::units::{Angle, Metres};
 
 /// The mode of the higher level.

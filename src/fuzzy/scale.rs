@@ -56,11 +56,11 @@ impl OutputScale {
         let mut shift = 16;
         while shift > 0 {
             // factor / 2^(16 + shift) = numerator / denominator.
-            let factor =
-                match ((numerator << (17 + shift)) + denominator).checked_div(2 * denominator) {
-                    Some(factor) => factor,
-                    None => break,
-                };
+            let doubled = (numerator << (17 + shift)).wrapping_add(denominator);
+            let factor = match doubled.checked_div(2 * denominator) {
+                Some(factor) => factor,
+                None => break,
+            };
             if factor <= u16::MAX as u128 {
                 return Self {
                     factor: factor as u16,

@@ -138,7 +138,11 @@ impl Local {
                 let swept = Angle::from_bits(turn.times(along.bits()) as i32);
                 let out = if left { from + swept } else { from - swept };
                 let outward = out.rotation();
-                let forward = if left { outward.left() } else { outward.right() };
+                let forward = if left {
+                    outward.left()
+                } else {
+                    outward.right()
+                };
                 let at = centre + outward.ahead(radius);
                 (Pose::new(at, tangent(out, left)), forward)
             }

@@ -173,8 +173,7 @@ impl CoarseTables {
 }
 
 // Statics of their own, so that an image without people in it holds nothing else.
-static CORRECTED_TWIN: CoarseTwin =
-    TwinTable::new(&ANTECEDENTS, &DEFLECTION_CORRECTED, &SPEED_7_4);
+static CORRECTED_TWIN: CoarseTwin = TwinTable::new(&ANTECEDENTS, &DEFLECTION_CORRECTED, &SPEED_7_4);
 static PRINTED_TWIN: CoarseTwin = TwinTable::new(&ANTECEDENTS, &DEFLECTION_PRINTED, &SPEED_7_4);
 
 /// Tables 7.3 and 7.4, erratum mended.
