@@ -360,7 +360,7 @@ fn the_edge_is_half_an_angle_beside_the_bearing() {
     let grown = metres(ROBOT + MARGIN);
     for at in -18..18 {
         for (distance, radius) in [
-            (0.2, 0.01),
+            (0.25, 0.01),
             (0.5, 0.2),
             (1.3, 0.4),
             (30.0, 2.0),
