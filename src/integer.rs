@@ -246,7 +246,9 @@ const fn arctangent_of_share(i: i64) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::integer::{divide, quotient, ratio, square_root};
+    use crate::integer::{
+        Reciprocal, divide, proper_fraction, quotient, ratio, saturate, square_root,
+    };
 
     /// Numbers at and around every power of two, and pseudo-random ones.
     fn numbers() -> impl Iterator<Item = u64> + Clone {
@@ -307,8 +309,54 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn ratios_are_rounded_towards_zero() {
         assert_eq!(ratio(i32::MIN, i32::MIN, 1), i32::MAX);
         assert_eq!(ratio(-7, 3, 2), -10);
         assert_eq!(ratio(5, 5, 0), 0);
+    }
+
+    #[test]
+    fn narrowing_saturates() {
+        for n in numbers().map(|n| n as i64) {
+            let wanted = n.clamp(i32::MIN.into(), i32::MAX.into());
+            assert_eq!(i64::from(saturate(n)), wanted, "{n}");
+        }
+    }
+
+    #[test]
+    fn fractions_are_short_by_two_steps_at_most() {
+        for most in numbers().map(|n| n as u32).filter(|most| *most > 0) {
+            for least in numbers().map(|n| n as u32).filter(|least| *least <= most) {
+                let exact = (u64::from(least) << 24) / u64::from(most);
+                let fraction = u64::from(proper_fraction(least, most));
+                assert!(
+                    fraction <= exact && exact <= fraction + 2,
+                    "{least} / {most}"
+                );
+            }
+        }
+        assert_eq!(proper_fraction(0, 0), 0);
+    }
+
+    #[test]
+    fn a_reciprocal_divides() {
+        for numerator in [1 << 29, 683_565_276, 1 << 30] {
+            for divisor in numbers().map(|d| d as u32) {
+                let reciprocal = Reciprocal::new(numerator, divisor);
+                let by = i128::from(divisor.clamp(1, 0x7fff_ffff));
+                for value in numbers().map(|v| v as i32) {
+                    let exact = i128::from(numerator) * i128::from(value) / by;
+                    let quotient = i128::from(reciprocal.times(value));
+                    let allowed = (exact.abs() >> 28) + 1;
+                    assert!(
+                        (quotient - exact).abs() <= allowed,
+                        "{numerator} · {value} / {divisor}: {quotient}, not {exact}"
+                    );
+                }
+            }
+        }
     }
 }

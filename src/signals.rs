@@ -83,10 +83,10 @@ impl Obstacle {
             i64::from(self.centre.y.bits()),
         );
         let leg = i64::from(root(beyond).bits());
-        let aside = match turn {
-            Turn::Left => i64::from(reach.bits()),
-            Turn::Right => i64::from(reach.bits()).wrapping_neg(),
-        };
+        let aside = i64::from(match turn {
+            Turn::Left => reach.bits(),
+            Turn::Right => reach.bits().wrapping_neg(),
+        });
         // The centre's vector turned by asin(reach / distance), as long as distance²: below 2^63.
         Rotation::of_length(
             x.wrapping_mul(leg).wrapping_sub(y.wrapping_mul(aside)),

@@ -356,6 +356,40 @@ fn inside_the_grown_circle_the_half_angle_is_a_quarter_turn() {
 }
 
 #[test]
+fn the_edge_is_half_an_angle_beside_the_bearing() {
+    let grown = metres(ROBOT + MARGIN);
+    for at in -18..18 {
+        for (distance, radius) in [
+            (0.25, 0.01),
+            (0.5, 0.2),
+            (1.3, 0.4),
+            (30.0, 2.0),
+            (9000.0, 10.0),
+        ] {
+            let obstacle = obstacle(f64::from(at) * 10.0 + 3.0, distance, radius);
+            let half = half_angle(&obstacle);
+            for (turn, sign) in [(Turn::Left, 1.0), (Turn::Right, -1.0)] {
+                let edge = obstacle.unfeasible_edge(grown, turn);
+                let degrees = f64::from(edge.angle().bits()) * 360.0 / 4_294_967_296.0;
+                let apart = wrap(degrees - bearing(&obstacle) - sign * half);
+                assert!(apart.abs() < ROUNDING, "{at}, {distance}: {apart}");
+                // As long as one: a metre along itself is a metre.
+                let along = edge.along(edge.ahead(metres(1.0)));
+                let squared: f64 = along.get().to_num();
+                assert!((squared - 1.0).abs() < 2.0 / 16_384.0, "{squared}");
+            }
+        }
+    }
+    // Inside the grown circle it is across.
+    let inside = obstacle(40.0, 0.2, 0.2);
+    for (turn, across) in [(Turn::Left, 130.0), (Turn::Right, -50.0)] {
+        let edge = inside.unfeasible_edge(grown, turn).angle();
+        let degrees = f64::from(edge.bits()) * 360.0 / 4_294_967_296.0;
+        assert!((degrees - across).abs() < ROUNDING, "{degrees}");
+    }
+}
+
+#[test]
 fn any_overshoot_that_checked_allows_keeps_the_constraint() {
     for degrees in ["0", "60", "90", "120", "150", "179"] {
         let settings = Avoider {

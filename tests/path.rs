@@ -615,6 +615,157 @@ fn speeds_that_the_path_allows() {
     }
 }
 
+/// A path that was made piece by piece: its segments, and what each asks for.
+struct Route {
+    segments: Vec<Segment>,
+    /// Where each piece begins, and the square of the speed that it allows.
+    pieces: Vec<(f64, f64)>,
+    /// Whether there is a corner where each begins.
+    corners: Vec<bool>,
+    length: f64,
+    closed: bool,
+}
+
+const LATERAL: f64 = 0.5;
+const AT_CORNERS: f64 = 0.1;
+const BRAKING: f64 = 0.5;
+
+impl Route {
+    /// Of (length, curvature, turn before it) each.
+    fn new(parts: &[(f64, f64, f64)], closed: bool) -> Self {
+        let mut route = Self {
+            segments: Vec::new(),
+            pieces: Vec::new(),
+            corners: Vec::new(),
+            length: 0.0,
+            closed,
+        };
+        let (mut x, mut y, mut heading) = (0.0f64, 0.0f64, 0.0f64);
+        let start = heading;
+        for &(length, curvature, turn) in parts {
+            heading += turn;
+            route.corners.push(turn.abs() > 15f64.to_radians());
+            let bend = if curvature == 0.0 {
+                route.segments.push(line(x, y, heading, length));
+                x += length * heading.cos();
+                y += length * heading.sin();
+                f64::INFINITY
+            } else {
+                let (radius, side) = (1.0 / curvature.abs(), curvature.signum());
+                let from = heading - side * PI / 2.0;
+                let (cx, cy) = (x - radius * from.cos(), y - radius * from.sin());
+                let swept = length * curvature;
+                route
+                    .segments
+                    .push(arc(cx, cy, radius, from, swept.to_degrees()));
+                x = cx + radius * (from + swept).cos();
+                y = cy + radius * (from + swept).sin();
+                heading += swept;
+                LATERAL * radius
+            };
+            route.pieces.push((route.length, bend));
+            route.length += f(route.segments.last().unwrap().length());
+        }
+        // The first piece's corner is met when the path closes.
+        route.corners[0] = off(start + parts[0].2, heading) > 15f64.to_radians();
+        route
+    }
+
+    /// Square of the speed allowed at `here`, by walking all pieces as far as braking from 1 m/s reaches.
+    fn allowed_squared(&self, here: f64) -> f64 {
+        let mut limit = 1.0f64;
+        let count = self.pieces.len();
+        for k in 0.. {
+            let (lap, i) = (k / count, k % count);
+            let base = lap as f64 * self.length;
+            let (start, bend) = (base + self.pieces[i].0, self.pieces[i].1);
+            let end = base + self.pieces.get(i + 1).map_or(self.length, |next| next.0);
+            if start - here > 1.1 {
+                break;
+            }
+            let brake =
+                |squared: f64, there: f64| squared + 2.0 * BRAKING * (there - here).max(0.0);
+            if k > 0 && self.corners[i] && start > here {
+                limit = limit.min(brake(AT_CORNERS * AT_CORNERS, start));
+            }
+            if end > here {
+                limit = limit.min(brake(bend, start));
+            }
+            if !self.closed && i + 1 == count {
+                return limit.min(brake(0.0, end));
+            }
+        }
+        limit
+    }
+
+    /// Drives along for `ticks` steps of `step`, with what the cursor allows and what is allowed at each.
+    fn drive(&self, step: f64, ticks: usize) -> Vec<(f64, f64)> {
+        let path = Path::segments_with_gaps(&self.segments, self.closed).unwrap();
+        let mut cursor = Cursor::default();
+        let (mut lap, mut last) = (0.0, 0.0);
+        (0..ticks)
+            .map(|tick| {
+                let at = (tick as f64 * step) % self.length;
+                let i = self.pieces.partition_point(|piece| piece.0 <= at) - 1;
+                let place = self.segments[i].at(metres(at - self.pieces[i].0)).at;
+                let fix = cursor.advance(&path, place, metres(2.0 * step + 0.01));
+                if f(fix.progress) < last {
+                    lap += self.length;
+                }
+                last = f(fix.progress);
+                let squared = cursor.speed_limit_squared(
+                    &path,
+                    MetresPerSecond::lit("1"),
+                    I16F16::from_num(BRAKING),
+                    I16F16::from_num(LATERAL),
+                    metres(AT_CORNERS),
+                );
+                let squared = (squared as f64 / 4_294_967_296.0).min(1.0);
+                (squared, self.allowed_squared(lap + last))
+            })
+            .collect()
+    }
+}
+
+fn parts(least: f64, most: f64) -> impl Strategy<Value = Vec<(f64, f64, f64)>> {
+    let curvature = prop_oneof![Just(0.0), 0.4..1.5f64, -1.5..-0.4f64];
+    let turn = prop_oneof![3 => Just(0.0), 1 => 0.5..2.0f64, 1 => -2.0..-0.5f64, 1 => Just(0.1)];
+    prop::collection::vec((least..most, curvature, turn), 1..=12)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Pieces are few enough here for the cursor to look at all that matters.
+    #[test]
+    fn the_speed_limit_is_that_of_walking_all_pieces(parts in parts(0.7, 2.5), closed in any::<bool>()) {
+        let route = Route::new(&parts, closed);
+        // Once past the end of an open path, nothing is asked any more.
+        let ticks = if closed { 400 } else { ((route.length - 0.02) / 0.05) as usize };
+        for (tick, (limit, exact)) in route.drive(0.05, ticks).into_iter().enumerate() {
+            prop_assert!((limit - exact).abs() < 2e-3, "tick {tick}: {limit}, not {exact}");
+        }
+    }
+
+    /// Where they are too many for it, the limit is lower, never higher, and it comes back.
+    #[test]
+    fn what_was_not_looked_at_may_be_an_end(parts in parts(0.03, 0.3), closed in any::<bool>()) {
+        let route = Route::new(&parts, closed);
+        let ticks = if closed { 200 } else { ((route.length - 0.02) / 0.02).max(0.0) as usize };
+        for (tick, (limit, exact)) in route.drive(0.02, ticks).into_iter().enumerate() {
+            prop_assert!(limit < exact + 2e-3, "tick {tick}: {limit}, above {exact}");
+        }
+    }
+}
+
+#[test]
+fn a_circle_of_one_piece_allows_the_same_all_round() {
+    let route = Route::new(&[(TAU * 0.8, 1.0 / 0.8, 0.0)], true);
+    for (tick, (limit, _)) in route.drive(0.05, 600).into_iter().enumerate() {
+        assert!((limit - LATERAL * 0.8).abs() < 1e-3, "{tick}: {limit}");
+    }
+}
+
 #[test]
 fn dense_points_do_not_hold_the_cursor_back() {
     // Points 1 cm apart, a robot at 2 m/s and 10 Hz: 20 cm a tick, of which the cursor makes good eight pieces.

@@ -15,7 +15,7 @@
 
 use super::follower::rate_of;
 use crate::fuzzy::{Position, Twin};
-use crate::geometry::{Rotation, square};
+use crate::geometry::square;
 use crate::integer::proper_fraction;
 use crate::params::{Avoider, Limits};
 use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Sight, Turn, Twist};
@@ -25,9 +25,8 @@ use crate::units::{Angle, Metres, MetresPerSecond};
 /// Least angle by which a heading must clear the unfeasible region: keeps the strict ">" of the chapter after rounding.
 const EDGE: Angle = Angle::deg("0.5");
 
-/// Turns by [`EDGE`] to the left and to the right: cos 0.5° and sin 0.5° with 30 fractional bits.
-const PAST_LEFT: Rotation = Rotation::from_bits(1_073_700_939, 9_370_046);
-const PAST_RIGHT: Rotation = Rotation::from_bits(1_073_700_939, -9_370_046);
+/// Its tangent, 30 fractional bits.
+const EDGE_TANGENT: i32 = 9_370_403;
 
 /// Desired motion while passing `held` on its committed side. `sight` is that of `held`, grown by the robot's radius and
 /// the margin.
@@ -85,9 +84,9 @@ pub fn avoid(
         let Some(other) = sensed.obstacles.iter().find(blocks) else {
             break;
         };
-        way = other.unfeasible_edge(grown, side).and(match side {
-            Turn::Right => PAST_RIGHT,
-            Turn::Left => PAST_LEFT,
+        way = other.unfeasible_edge(grown, side).nudged(match side {
+            Turn::Right => -EDGE_TANGENT,
+            Turn::Left => EDGE_TANGENT,
         });
         pushed = true;
     }

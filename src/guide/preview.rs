@@ -103,7 +103,8 @@ impl Preview {
             blind
         };
         // The first may be the bend that the robot is in, which does not ease with the distance; the second is ahead.
-        for bound in [self.get(0), self.get(1)].into_iter().flatten() {
+        for index in 0..2 {
+            let Some(bound) = self.get(index) else { break };
             limit = limit.min(allowed.brake(bound.squared, bound.from, here));
         }
         limit
