@@ -1,4 +1,4 @@
-//! The same controller with [oxictl](https://crates.io/crates/oxictl) 0.1.1 (Apache-2.0).
+//! The same controller with the crate oxictl 0.1.1 (Apache-2.0).
 //!
 //! Its `SugenoEngine` can express the rule base exactly: triangles and trapezoids for the terms, min for AND, a constant
 //! for every rule's output, the weighted average. It has one output, so there are two engines, each of which fuzzifies the

@@ -48,17 +48,23 @@ impl OutputScale {
     /// Times `numerator / denominator`, to the nearest of 16 significant bits; below 2⁻¹⁷ fewer of them. Saturates at
     /// just below ½, also for a denominator of 0.
     pub const fn new(numerator: u64, denominator: u64) -> Self {
-        let (numerator, denominator) = (numerator as u128, denominator as u128);
-        // The largest shift whose factor still has 16 bits.
-        let mut shift = 16;
-        while shift > 0 {
-            // Below 2^98: nothing wraps.
-            let doubled = (numerator << (17 + shift)).wrapping_add(denominator);
-            match doubled.checked_div(2 * denominator) {
-                Some(factor) if factor <= u16::MAX as u128 => {
+        // Twice the rest of the division must fit.
+        let (numerator, denominator) = match denominator >> 63 {
+            0 => (numerator, denominator),
+            _ => (numerator >> 1, denominator >> 1),
+        };
+        if numerator < denominator.div_ceil(2) {
+            let wide = quotient(numerator, denominator);
+            // The largest shift whose factor still has 16 bits.
+            let mut shift = 16u8;
+            while shift > 0 {
+                let beyond = 17u32.wrapping_sub(shift as u32);
+                let half = 1u64.wrapping_shl(beyond.wrapping_sub(1));
+                let factor = wide.wrapping_add(half).wrapping_shr(beyond);
+                if factor <= u16::MAX as u64 {
                     return Self(Fraction::new(factor as u16, shift));
                 }
-                _ => shift -= 1,
+                shift = shift.wrapping_sub(1);
             }
         }
         Self(Fraction::new(u16::MAX, 1))
@@ -69,4 +75,20 @@ impl OutputScale {
     pub const fn apply(self, wide: i32) -> i32 {
         self.0.of(wide)
     }
+}
+
+/// `numerator / denominator`, below one, with 33 fractional bits, rounded down: bit by bit, a division of this width would be
+/// 2 KiB on a microcontroller. The denominator is below 2^63.
+const fn quotient(numerator: u64, denominator: u64) -> u64 {
+    let (mut rest, mut quotient, mut bit) = (numerator, 0u64, 0);
+    while bit < 33 {
+        rest = rest.wrapping_shl(1);
+        quotient = quotient.wrapping_shl(1);
+        if rest >= denominator {
+            rest = rest.wrapping_sub(denominator);
+            quotient = quotient.wrapping_add(1);
+        }
+        bit = u32::wrapping_add(bit, 1);
+    }
+    quotient
 }
