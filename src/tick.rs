@@ -52,7 +52,8 @@ impl Probe for () {
 pub struct Robot<const N: usize> {
     params: Params<N>,
     // From the settings, before the first tick.
-    beams: Option<Beams<N>>,
+    beams: Beams<N>,
+    placed: bool,
     // Of the settings, made where they are checked.
     fine: FineController,
     // Scratch of one tick. Here, because a microcontroller's stack is small.
@@ -79,7 +80,8 @@ impl<const N: usize> Robot<N> {
             localiser: Localiser::new(&params.body, start),
             fine,
             params,
-            beams: None,
+            beams: Beams::new(),
+            placed: false,
             readings: [RangeReading::NEVER_SEEN; N],
             sensed: Sensed::new(),
             odometer: Odometer::new(),
@@ -107,7 +109,7 @@ impl<const N: usize> Robot<N> {
     /// The first setting that the robot cannot be driven with; then nothing is forgotten.
     pub fn restart(&mut self, start: Pose) -> Result<(), ParamError> {
         self.params.check()?;
-        self.beams = None;
+        self.placed = false;
         self.fine = FineController::new(&self.params.follower, &self.params.limits);
         self.localiser = Localiser::new(&self.params.body, start);
         self.odometer = Odometer::default();
@@ -198,9 +200,11 @@ impl<const N: usize> Robot<N> {
         let p = &self.params;
         let travel = self.odometer.travel(counts);
         let readings = self.readings.get(..mounted).unwrap_or_default();
-        let beams = self.beams.get_or_insert_with(|| Beams::new(&p.ring));
+        if !core::mem::replace(&mut self.placed, true) {
+            self.beams.place(&p.ring);
+        }
         let speed = self.last.linear;
-        sense_ranges(&p.ring, beams, readings, speed, &mut self.sensed);
+        sense_ranges(&p.ring, &self.beams, readings, speed, &mut self.sensed);
         probe.mark(Stage::Sense);
         travel
     }

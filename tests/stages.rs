@@ -865,7 +865,8 @@ fn sense_at<const N: usize>(
 ) -> Sensed {
     let mut sensed = Sensed::default();
     let before = [RangeReading::fresh(Range::Echo(metres(0.5))); N];
-    let beams = Beams::new(ring);
+    let mut beams = Beams::new();
+    beams.place(ring);
     sense_ranges(ring, &beams, &before, speed, &mut sensed);
     sense_ranges(ring, &beams, readings, speed, &mut sensed);
     sensed

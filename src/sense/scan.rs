@@ -21,19 +21,30 @@ pub struct Beams<const N: usize> {
     space: I2F30,
 }
 
+impl<const N: usize> Default for Beams<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<const N: usize> Beams<N> {
-    /// Of this ring.
-    pub fn new(ring: &RingGeometry<N>) -> Self {
-        let mut directions = [Rotation::NONE; N];
-        for (direction, mount) in directions.iter_mut().zip(&ring.mounts) {
+    /// Of no ring yet: see [`Beams::place`].
+    pub const fn new() -> Self {
+        Self {
+            directions: [Rotation::NONE; N],
+            cone: (Angle::ZERO, I2F30::ZERO),
+            space: I2F30::ZERO,
+        }
+    }
+
+    /// Takes over a ring's geometry. In place: a microcontroller's stack has no room for another ring.
+    pub fn place(&mut self, ring: &RingGeometry<N>) {
+        for (direction, mount) in self.directions.iter_mut().zip(&ring.mounts) {
             *direction = mount.pose.heading.rotation();
         }
         let width = ring.mounts.first().map_or(Angle::ZERO, |m| m.width);
-        Self {
-            directions,
-            cone: (width, half_sine(width)),
-            space: half_sine(pitch(ring)),
-        }
+        self.cone = (width, half_sine(width));
+        self.space = half_sine(pitch(ring));
     }
 }
 

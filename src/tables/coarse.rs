@@ -160,7 +160,7 @@ impl CoarseTables {
             share @ 1..0x1_0000 => Position::from_bits(share.cast_unsigned() << 16),
             _ => Position::LAST,
         };
-        let theta = turned(theta.saturating_add(I16F16::lit("90")));
+        let theta = turned(theta.saturating_add(const { I16F16::lit("90") }));
         let Nested { turn, pace } = nested(self.twin, share, theta, input);
         let ([deflection, _], [_, speed]) = (turn.rounded(), pace.rounded());
         CoarseOutput {
