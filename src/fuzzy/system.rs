@@ -168,12 +168,6 @@ impl<'a> System<'a> {
             terms += inputs[i].terms.len();
             i += 1;
         }
-        let mut o = 0;
-        while o < outputs.len() {
-            let count = outputs[o].defuzzifier.term_count();
-            terms = if count > terms { count } else { terms };
-            o += 1;
-        }
         Ok(Self {
             inputs,
             blocks,
@@ -199,7 +193,7 @@ impl<'a> System<'a> {
         self.outputs
     }
 
-    /// How many terms' degrees it takes at a time: of all inputs' terms, or of the output with the most if that has more.
+    /// How many terms the inputs have in all.
     pub const fn term_count(&self) -> usize {
         self.terms
     }
@@ -209,8 +203,8 @@ impl<'a> System<'a> {
         self.rules
     }
 
-    /// Evaluates a system whose sizes are known at run time only, in memory that is given: a value for each input,
-    /// [`System::term_count`] degrees, a degree for each rule, a value for each output. A [`Controller`] brings its own.
+    /// Evaluates a system whose sizes are known at run time only, in memory that is given: a value for each input, a
+    /// degree for each of the inputs' terms and for each rule, a value for each output. A [`Controller`] brings its own.
     ///
     /// # Errors
     ///

@@ -516,8 +516,7 @@ const fn holds(rule: &Rule<'_>, terms: &[u8; MAX_INPUTS]) -> bool {
 }
 
 impl Defuzzifier<'_> {
-    /// How many terms it has.
-    pub(super) const fn term_count(&self) -> usize {
+    const fn term_count(&self) -> usize {
         match self {
             Self::WeightedAverage { terms, .. } => terms.len(),
             Self::Centroid { terms, .. } => terms.len(),

@@ -2,8 +2,8 @@
 
 use super::{Degree, Flaw, System};
 
-/// A [`System`] of `I` inputs with `T` terms in all (or of an output's terms, if one has more: [`System::term_count`]), `R`
-/// rules and `O` outputs: it brings its own memory, so nothing can have a wrong size.
+/// A [`System`] of `I` inputs with `T` terms in all, `R` rules and `O` outputs: it brings its own memory, so nothing can
+/// have a wrong size.
 #[derive(Clone, Copy, Debug)]
 pub struct Controller<'a, const I: usize, const T: usize, const R: usize, const O: usize> {
     system: System<'a>,

@@ -46,24 +46,11 @@ impl System<'_> {
                 Defuzzifier::WeightedAverage { merge, terms } => {
                     fired.average(i, merge, terms, &limited)
                 }
-                // The inputs' terms are done with; the output's take their place.
                 Defuzzifier::Centroid {
                     merge,
                     samples,
-                    terms: sets,
-                } => match fired.implication() {
-                    Some(norm) if merge == Merge::Max || norm == Norm::Product => {
-                        fired.merge_terms(i, merge, sets.len(), terms);
-                        let activations = Activations {
-                            merge,
-                            norm,
-                            sets,
-                            degrees: terms,
-                        };
-                        centroid(samples, |place| activations.at(place))
-                    }
-                    _ => centroid(samples, |place| fired.at(i, merge, sets, place)),
-                },
+                    terms,
+                } => fired.centroid(i, merge, samples, terms),
             };
             let value = self::limited(value.into(), output.range);
             // All ones where nothing fired.
@@ -152,8 +139,7 @@ impl Fired<'_> {
                 }
             }),
             Merge::Max => {
-                let count = terms.len();
-                for (number, i) in terms.iter().zip(0..count) {
+                for (number, i) in terms.iter().zip(0..terms.len()) {
                     let mut merged = Degree::ZERO;
                     self.conclusions(output, |term, degree, _| {
                         if usize::from(term) == i {
@@ -167,90 +153,38 @@ impl Fired<'_> {
         (rounded(sum, weight), weight)
     }
 
-    /// The implication that all blocks have, if they have the same.
-    fn implication(&self) -> Option<Norm> {
-        let (first, rest) = self.blocks.split_first()?;
-        let same = rest
-            .iter()
-            .all(|block| block.implication == first.implication);
-        same.then_some(first.implication)
-    }
-
-    /// What all rules together say of each term of an output, into the first `count` of `merged`.
-    fn merge_terms(&self, output: usize, merge: Merge, count: usize, merged: &mut [Degree]) {
-        for degree in merged.iter_mut().take(count) {
-            *degree = Degree::ZERO;
+    /// The centroid of the merged sets, and their area.
+    fn centroid(
+        &self,
+        output: usize,
+        merge: Merge,
+        samples: Samples,
+        terms: &[Set<'_>],
+    ) -> (i32, u64) {
+        let (mut moment, mut area) = (0u64, 0u64);
+        for place in 0..samples.count() {
+            let mut merged = 0u32;
+            self.conclusions(output, |term, degree, implication| {
+                let set = terms.get(usize::from(term)).copied().unwrap_or_default();
+                let grade = set.get(place).copied().unwrap_or(Grade::ZERO);
+                // A grade is a degree with nine bits less.
+                let member = Degree::known(u32::from(grade.bits()).wrapping_shl(9));
+                let implied = match implication {
+                    Norm::Min => degree.least(member),
+                    Norm::Product => degree.product(member),
+                };
+                merged = match merge {
+                    Merge::Sum => merged.wrapping_add(implied.bits()),
+                    Merge::Max => Degree::known(merged).most(implied).bits(),
+                };
+            });
+            area = area.wrapping_add(merged.into());
+            moment = moment.wrapping_add(u64::from(merged).wrapping_mul(place as u64));
         }
-        self.conclusions(output, |term, degree, _| {
-            if let Some(place) = merged.get_mut(usize::from(term)) {
-                *place = both(merge, *place, degree);
-            }
-        });
+        let (top, bottom) = reduced(moment, area);
+        let top = top.wrapping_shl(Samples::FRACTION);
+        let mean = quotient(top.wrapping_add((bottom >> 1).into()), bottom);
+        // Where nothing fired it means nothing, and is not used.
+        (samples.at(mean), area)
     }
-
-    /// The merged sets at a sample, rule by rule.
-    fn at(&self, output: usize, merge: Merge, sets: &[Set<'_>], place: usize) -> u32 {
-        let mut merged = Degree::ZERO;
-        self.conclusions(output, |term, degree, implication| {
-            let set = sets.get(usize::from(term)).copied().unwrap_or_default();
-            merged = both(merge, merged, implied(implication, degree, set, place));
-        });
-        merged.bits()
-    }
-}
-
-/// Sets that are merged term by term before they are looked at. That is the same where the largest counts, and where
-/// scaled sets are added; sets that are cut off and added are merged rule by rule.
-struct Activations<'a> {
-    merge: Merge,
-    norm: Norm,
-    sets: &'a [Set<'a>],
-    degrees: &'a [Degree],
-}
-
-impl Activations<'_> {
-    fn at(&self, place: usize) -> u32 {
-        let mut merged = Degree::ZERO;
-        for (set, &degree) in self.sets.iter().zip(self.degrees) {
-            merged = both(self.merge, merged, implied(self.norm, degree, set, place));
-        }
-        merged.bits()
-    }
-}
-
-/// Two degrees put together; a sum of degrees may be above one, but has 32 bits: see [`Flaw::Accumulator`](super::Flaw).
-#[inline]
-fn both(merge: Merge, a: Degree, b: Degree) -> Degree {
-    match merge {
-        Merge::Sum => Degree::known(a.bits().wrapping_add(b.bits())),
-        Merge::Max => a.most(b),
-    }
-}
-
-/// What is left of a set at a sample.
-#[inline]
-fn implied(implication: Norm, degree: Degree, set: Set<'_>, place: usize) -> Degree {
-    let grade = set.get(place).copied().unwrap_or(Grade::ZERO);
-    // A grade is a degree with nine bits less.
-    let member = Degree::known(u32::from(grade.bits()).wrapping_shl(9));
-    match implication {
-        Norm::Min => degree.least(member),
-        Norm::Product => degree.product(member),
-    }
-}
-
-/// The centroid of a merged set, and its area.
-#[inline]
-fn centroid(samples: Samples, at: impl Fn(usize) -> u32) -> (i32, u64) {
-    let (mut moment, mut area) = (0u64, 0u64);
-    for place in 0..samples.count() {
-        let merged = at(place);
-        area = area.wrapping_add(merged.into());
-        moment = moment.wrapping_add(u64::from(merged).wrapping_mul(place as u64));
-    }
-    let (top, bottom) = reduced(moment, area);
-    let top = top.wrapping_shl(Samples::FRACTION);
-    let mean = quotient(top.wrapping_add((bottom >> 1).into()), bottom);
-    // Where nothing fired it means nothing, and is not used.
-    (samples.at(mean), area)
 }

@@ -270,7 +270,7 @@ impl Flaw {
             Self::Accumulator { output } => text.named("output", output).and(
                 ": its weighted sums could overflow; take fewer rules or a coarser number format",
             ),
-            Self::Sizes => text.and("a controller's sizes are its system's: inputs, terms, rules, outputs"),
+            Self::Sizes => text.and("a controller's sizes are its system's: inputs, terms of the inputs, rules, outputs"),
         }
     }
 }
