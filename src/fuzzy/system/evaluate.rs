@@ -139,7 +139,8 @@ impl Fired<'_> {
                 }
             }),
             Merge::Max => {
-                for (number, i) in terms.iter().zip(0..terms.len()) {
+                let count = terms.len();
+                for (number, i) in terms.iter().zip(0..count) {
                     let mut merged = Degree::ZERO;
                     self.conclusions(output, |term, degree, _| {
                         if usize::from(term) == i {

@@ -139,7 +139,7 @@ impl Samples {
         let span = (high as i64 - low as i64) as u64;
         // The step's mantissa with all of 32 bits; a step below one keeps 32 fractional bits.
         let mut shift = 32;
-        while shift > 0 && (span << shift) / parts >> 32 != 0 {
+        while shift > 0 && ((span << shift) / parts) >> 32 != 0 {
             shift -= 1;
         }
         Self {
