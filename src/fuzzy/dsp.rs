@@ -1,4 +1,4 @@
-//! Four rules weighed in twenty instructions, where a processor computes with two 16-bit numbers in one register
+//! Four rules weighed in two dozen instructions, where a processor computes with two 16-bit numbers in one register
 //! (Cortex-M4 and M7). To the bit what [`weigh`](super::weigh) does without.
 #![allow(unsafe_code)]
 
@@ -42,10 +42,12 @@ pub(super) fn weigh<const C: usize>(row: &Place, col: &Place, edges: &[Edge; C])
             "smladx {rows}, {right}, {last}, {rows}",
             "smuad {cols}, {left}, {cols}",
             "smladx {cols}, {right}, {edges}, {cols}",
-            // Σw: the degrees times minus one, which as it stands is the dividend, too.
+            // Σw: the degrees times minus one. Then 2³¹ by half of it.
             "mvn {edges}, #0",
             "smuad {last}, {left}, {edges}",
             "smlad {last}, {right}, {edges}, {last}",
+            "lsr {last}, {last}, #1",
+            "lsl {edges}, {edges}, #31",
             "udiv {last}, {edges}, {last}",
             edges = inout(reg) edges.as_ptr() => _,
             left = inout(reg) gap => on_left,

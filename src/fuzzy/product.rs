@@ -1,7 +1,7 @@
 //! Products wider than 32 bits, rounded down to 32. A processor that has no upper half of a product puts it together from
 //! two of 16 bits; the results are the same.
 
-/// `sum · reciprocal / 2²⁰` for a `reciprocal` from 2¹⁶ − 1 to 2¹⁷ − 1 and a result below 2²⁷.
+/// `sum · reciprocal / 2²⁰` for a `reciprocal` from 2¹⁶ to 2¹⁷ and a result below 2²⁷.
 #[inline(always)]
 pub(super) const fn mean(sum: i32, reciprocal: u32) -> i32 {
     #[cfg(not(narrow))]
@@ -69,11 +69,8 @@ mod wide {
 mod narrow {
     #[inline(always)]
     pub const fn mean(sum: i32, reciprocal: u32) -> i32 {
-        // The least reciprocal is one short of 2^16: there, and only there, a 2^16th is to be taken off.
-        let short = (reciprocal >> 16).wrapping_sub(1);
-        let beyond_one = times(sum, reciprocal.wrapping_sub(1 << 16) & !short);
-        let off = sum.wrapping_neg() >> 16 & short as i32;
-        sum.wrapping_add(beyond_one).wrapping_add(off) >> 4
+        let beyond_one = times(sum, reciprocal.wrapping_sub(1 << 16));
+        sum.wrapping_add(beyond_one) >> 4
     }
 
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +114,7 @@ mod tests {
     #[test]
     fn both_ways_give_the_same_integer() {
         for sum in numbers() {
-            for reciprocal in ((1 << 16) - 1..1 << 17).step_by(13).chain([(1 << 17) - 1]) {
+            for reciprocal in (1 << 16..=1 << 17).step_by(13).chain([1 << 17]) {
                 let exact = (i64::from(sum) * i64::from(reciprocal)) >> 20;
                 if exact.abs() >= 1 << 27 {
                     continue;

@@ -1,8 +1,7 @@
 //! 1 / Σw. Four rules of two Ruspini partitions weigh between one and two, so one reciprocal is all the division there
 //! is, and every output shares it.
 
-/// (2³² − 1) / Σw, rounded down, where Σw is 2¹⁵ + 2·`excess` and `excess` 0 to 2¹⁴: from just below 2¹⁶ to just below
-/// 2¹⁷.
+/// 2³² / Σw, rounded down, where Σw is 2¹⁵ + 2·`excess` and `excess` 0 to 2¹⁴: 2¹⁶ to 2¹⁷.
 ///
 /// The same integer on every processor. One without a division approaches it by Newton's method.
 #[inline(always)]
@@ -16,9 +15,9 @@ pub(super) fn reciprocal(excess: u32) -> u32 {
 #[cfg(any(not(narrow), test))]
 #[inline(always)]
 fn by_division(excess: u32) -> u32 {
-    // The mask takes nothing away: it shows the compiler that the divisor is not zero.
-    let weight = (1u32 << 15).wrapping_add((excess & 0x7fff) << 1);
-    u32::MAX / weight
+    // Half of both, and the same result. The mask takes nothing away: it shows the compiler that this is not zero.
+    let half = (1u32 << 14).wrapping_add(excess & 0x7fff);
+    (1 << 31) / half
 }
 
 /// Two steps from a straight line. The constants are any of those for which the result is never too large and too small
@@ -27,7 +26,7 @@ fn by_division(excess: u32) -> u32 {
 #[inline(always)]
 fn by_newton(excess: u32) -> u32 {
     // Half of both, so that an error has its sign; Σw is even.
-    const ONE: u32 = i32::MAX as u32;
+    const ONE: u32 = 1 << 31;
     let half = (1u32 << 14).wrapping_add(excess);
     let error = |one: u32, r: u32| one.wrapping_sub(half.wrapping_mul(r)) as i32;
     // Parallel to the chord of the hyperbola: within 8 %.
@@ -50,7 +49,9 @@ mod tests {
     #[test]
     fn both_ways_give_the_same_integer_for_every_weight() {
         for excess in 0..=1 << 14 {
-            let exact = u32::MAX / ((1 << 15) + 2 * excess);
+            let exact = ((1u64 << 32) / u64::from((1 << 15) + 2 * excess)) as u32;
+            // What `product::mean` takes; one less, and half a product would be wrong.
+            assert!((1 << 16..=1 << 17).contains(&exact));
             assert_eq!(by_division(excess), exact, "{excess}");
             assert_eq!(by_newton(excess), exact, "{excess}");
         }
