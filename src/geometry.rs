@@ -1,6 +1,7 @@
 //! Points and poses in the plane, in fixed point. x forward (or east), y left (or north), counter-clockwise positive.
 
 use crate::integer::{saturate, square_root};
+use crate::signals::Turn;
 use crate::units::{Angle, Metres};
 use fixed::types::I2F30;
 
@@ -117,29 +118,34 @@ impl Rotation {
         Point::new(times(distance, self.cos), times(distance, self.sin))
     }
 
-    /// Of the direction (x, y), a vector of this `length`, which is above zero and below 2^63. The direction is exact; the
-    /// result is as long as one within 2^-14.
-    pub(crate) const fn of_length(x: i64, y: i64, length: u64) -> Self {
-        // The length's top bit goes to the second place of the upper half; neither coordinate is longer.
-        let up = length.leading_zeros().saturating_sub(1);
-        let divisor = (length.wrapping_shl(up) >> 47) as u32;
-        // 2^31 by the upper 16 bits of it: 2^46 by the length.
+    /// Of the direction (x, y), a vector about as long as `length`, which is from 1 to 2^30. The direction is exact; the
+    /// result is as long as one within 2^-14 and what the vector is longer or shorter.
+    pub(crate) const fn of_length(x: i32, y: i32, length: u32) -> Self {
+        // The length's top bit goes to the third place; neither coordinate is much longer.
+        let up = length.leading_zeros().saturating_sub(2);
+        let divisor = length.wrapping_shl(up) >> 15;
+        // 2^31 by the upper 15 bits of it: 2^46 by the length.
         let reciprocal = match (1u32 << 31).checked_div(divisor) {
             Some(reciprocal) => reciprocal as i32,
             None => 0,
         };
-        let cos = (x.wrapping_shl(up) >> 32).wrapping_mul(reciprocal as i64) >> 16;
-        let sin = (y.wrapping_shl(up) >> 32).wrapping_mul(reciprocal as i64) >> 16;
+        let cos = (x.wrapping_shl(up) as i64).wrapping_mul(reciprocal as i64) >> 16;
+        let sin = (y.wrapping_shl(up) as i64).wrapping_mul(reciprocal as i64) >> 16;
         Self::from_bits(cos as i32, sin as i32)
     }
 
-    /// A little further, counter-clockwise: by the angle with this tangent, 30 fractional bits. It gets longer by half the
+    /// A little further to the side: by the angle with this tangent, 32 fractional bits. It gets longer by half the
     /// tangent's square.
-    pub(crate) const fn nudged(self, tangent: i32) -> Self {
+    #[inline(always)]
+    pub(crate) const fn nudged(self, side: Turn, tangent: i32) -> Self {
         let (cos, sin) = (self.cos.to_bits(), self.sin.to_bits());
-        let along = ((cos as i64).wrapping_mul(tangent as i64) >> 30) as i32;
-        let beside = ((sin as i64).wrapping_mul(tangent as i64) >> 30) as i32;
-        Self::from_bits(cos.wrapping_sub(beside), sin.wrapping_add(along))
+        // A constant tangent makes these the upper half of a product, an instruction each.
+        let along = ((cos as i64).wrapping_mul(tangent as i64) >> 32) as i32;
+        let beside = ((sin as i64).wrapping_mul(tangent as i64) >> 32) as i32;
+        match side {
+            Turn::Left => Self::from_bits(cos.wrapping_sub(beside), sin.wrapping_add(along)),
+            Turn::Right => Self::from_bits(cos.wrapping_add(beside), sin.wrapping_sub(along)),
+        }
     }
 
     /// The angle turned by.

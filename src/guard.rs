@@ -23,35 +23,55 @@ pub fn guard(
     last: Twist,
     wanted: Twist,
 ) -> (Twist, bool) {
+    if wanted.linear <= MetresPerSecond::ZERO {
+        return (wanted, false);
+    }
     let (period, latency) = timing;
     let reaction = period + latency;
+    let slowing = MetresPerSecond::new(params.braking).over(latency);
+    let faster = MetresPerSecond::from_bits(slowing.bits() >> 1);
+    let under_way = (last.linear.max(MetresPerSecond::ZERO) + faster).over(latency);
+    let braking = u64::from(params.braking.to_bits().unsigned_abs());
+    // What `free` leaves for either term.
+    let granted = |free: Metres| {
+        let free = (free - under_way).max(Metres::ZERO);
+        let squared = braking.wrapping_mul(free.bits().unsigned_abs().into());
+        (i64::from(free.bits()) << 23, squared)
+    };
+    // Products say whether the speed is within both limits; a division and a root are for one that is not.
+    let needs = i64::from(wanted.linear.bits()).wrapping_mul(reaction.bits().into());
+    let needs_squared = square(Metres::from_bits(wanted.linear.bits()));
+    let passes = |free: Metres| {
+        let (room, squared) = granted(free);
+        needs <= room && needs_squared <= squared
+    };
     let reach = radius + params.margin;
+    // Nearer than its x less the whole reach no echo can be: mostly that says enough.
+    let mut nearest = Metres::MAX;
+    let mut spreads = sensed.spreads.iter();
+    for echo in &sensed.echoes {
+        let wide = reach + spreads.next().copied().unwrap_or_default();
+        if echo.x > Metres::ZERO && echo.y < wide && echo.y > -wide {
+            nearest = nearest.min(echo.x);
+        }
+    }
+    if nearest == Metres::MAX || passes(nearest - reach) {
+        return (wanted, false);
+    }
     let mut free = Metres::MAX;
     let mut spreads = sensed.spreads.iter();
     for echo in &sensed.echoes {
         let spread = spreads.next().copied().unwrap_or_default();
         // The place nearest to the corridor's middle that the echo may come from.
         let beside = (echo.y.abs() - spread).max(Metres::ZERO);
-        // Nearer than its x less the whole reach it cannot be: most echoes need no root.
         if echo.x > Metres::ZERO && beside < reach && echo.x - reach < free {
             free = free.min((echo.x - leg(reach, beside)).max(Metres::ZERO));
         }
     }
-    if free == Metres::MAX || wanted.linear <= MetresPerSecond::ZERO {
+    if passes(free) {
         return (wanted, false);
     }
-    let slowing = MetresPerSecond::new(params.braking).over(latency);
-    let faster = MetresPerSecond::from_bits(slowing.bits() >> 1);
-    let under_way = (last.linear.max(MetresPerSecond::ZERO) + faster).over(latency);
-    let free = (free - under_way).max(Metres::ZERO);
-    let room = i64::from(free.bits()) << 23;
-    let braking = u64::from(params.braking.to_bits().unsigned_abs());
-    let squared = braking.saturating_mul(free.bits().unsigned_abs().into());
-    // Products say whether the speed is within both limits; a division and a root are for one that is not.
-    let needs = i64::from(wanted.linear.bits()).wrapping_mul(reaction.bits().into());
-    if needs <= room && square(Metres::from_bits(wanted.linear.bits())) <= squared {
-        return (wanted, false);
-    }
+    let (room, squared) = granted(free);
     let by_reaction = quotient(room, reaction.bits()).map_or(i32::MAX, saturate);
     let limit = MetresPerSecond::from_bits(by_reaction.min(root(squared).bits()));
     let guarded = Twist {

@@ -8,6 +8,6 @@ mod preview;
 mod store;
 
 pub use cursor::{Cursor, Fix, LOOK};
-pub use law::guide;
+pub use law::{guide, pace};
 pub use path::{MAX_PIECES, Path, PathError, Segment, Waypoint};
 pub use store::{StoreError, StoredPath};

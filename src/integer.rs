@@ -1,5 +1,6 @@
 //! Integer routines of bounded, small cost: no Cortex-M divides 64 bits, so what must be 64 bits wide is put together from
-//! 32-bit divisions. Every routine is total.
+//! 32-bit divisions. Every routine is total. The long ones are never inlined: they are called from many places, and an
+//! image has them once.
 
 /// Narrows to `i32`, saturating.
 pub(crate) const fn saturate(wide: i64) -> i32 {
@@ -16,6 +17,7 @@ pub(crate) const fn saturate(wide: i64) -> i32 {
 ///
 /// Schoolbook division in digits of 16 bits (Knuth, *The Art of Computer Programming* 2, 4.3.1 D): at most three 32-bit
 /// divisions.
+#[inline(never)]
 pub(crate) const fn divide(value: u64, divisor: u32) -> Option<u64> {
     let (upper, lower) = ((value >> 32) as u32, value as u32);
     let (Some(first), Some(rest)) = (upper.checked_div(divisor), upper.checked_rem(divisor)) else {
@@ -107,6 +109,7 @@ impl Reciprocal {
 ///
 /// Zimmermann's Karatsuba square root with one level (*INRIA RR-3805*, 1999): the root of the upper half, then 16 more
 /// bits by a division. Two 32-bit divisions in all, where `u64::isqrt` takes one of 64 bits.
+#[inline(never)]
 pub(crate) fn square_root(square: u64) -> u32 {
     if square == 0 {
         return 0;
@@ -160,6 +163,7 @@ static ROOTS: [(u16, u16); 192] = {
 ///
 /// The smaller coordinate by the larger, in two digits of 32-bit divisions; the arctangent of that from a table of 257,
 /// linear in between.
+#[inline(never)]
 pub(crate) const fn arctangent(x: i32, y: i32) -> i32 {
     let (ax, ay) = (x.unsigned_abs(), y.unsigned_abs());
     let (steep, most, least) = if ay > ax {
@@ -167,16 +171,7 @@ pub(crate) const fn arctangent(x: i32, y: i32) -> i32 {
     } else {
         (false, ax, ay)
     };
-    let ratio = proper_fraction(least, most);
-    let (place, rest) = ((ratio >> 16) as usize, ratio & 0xffff);
-    // The ratio is at most one, 2^24: place 256, rest 0.
-    let [from, to] = match place {
-        0..256 => [ARCTANGENTS[place], ARCTANGENTS[place + 1]],
-        _ => [ARCTANGENTS[256]; 2],
-    };
-    // Neighbours differ by less than 2^22.
-    let between = ((to.wrapping_sub(from) as u64).wrapping_mul(rest as u64) >> 16) as u32;
-    let octant = from.wrapping_add(between);
+    let octant = octant(proper_fraction(least, most));
     let quadrant = if steep {
         (1u32 << 30).wrapping_sub(octant)
     } else {
@@ -189,6 +184,36 @@ pub(crate) const fn arctangent(x: i32, y: i32) -> i32 {
     };
     let whole = half as i32;
     if y < 0 { whole.wrapping_neg() } else { whole }
+}
+
+/// Arctangent of a number, 16 fractional bits, as a binary angle. Within 1.3e-6 rad, and without a division up to one.
+pub(crate) fn arctangent_of(tangent: i32) -> i32 {
+    const ONE: u32 = 1 << 16;
+    let magnitude = tangent.unsigned_abs();
+    let angle = if magnitude <= ONE {
+        octant(magnitude << 8)
+    } else {
+        (1u32 << 30).wrapping_sub(octant(proper_fraction(ONE, magnitude)))
+    } as i32;
+    if tangent < 0 {
+        angle.wrapping_neg()
+    } else {
+        angle
+    }
+}
+
+/// Arctangent of a number from 0 to 1, 24 fractional bits.
+#[inline(always)]
+const fn octant(ratio: u32) -> u32 {
+    let (place, rest) = ((ratio >> 16) as usize, ratio & 0xffff);
+    // The ratio is at most one, 2^24: place 256, rest 0.
+    let [from, to] = match place {
+        0..256 => [ARCTANGENTS[place], ARCTANGENTS[place + 1]],
+        _ => [ARCTANGENTS[256]; 2],
+    };
+    // Neighbours differ by less than 2^22.
+    let between = ((to.wrapping_sub(from) as u64).wrapping_mul(rest as u64) >> 16) as u32;
+    from.wrapping_add(between)
 }
 
 /// `least / most` with 24 fractional bits, for `least` ≤ `most`, short by 2 steps at most; 0 if both are.

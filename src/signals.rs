@@ -78,20 +78,21 @@ impl Obstacle {
                 Turn::Right => centre.right(),
             };
         };
-        let (x, y) = (
-            i64::from(self.centre.x.bits()),
-            i64::from(self.centre.y.bits()),
-        );
-        let leg = i64::from(root(beyond).bits());
-        let aside = i64::from(match turn {
-            Turn::Left => reach.bits(),
-            Turn::Right => reach.bits().wrapping_neg(),
-        });
-        // The centre's vector turned by asin(reach / distance), as long as distance²: below 2^63.
+        let leg = root(beyond);
+        // With all lengths in 15 bits the products are short; a thousandth of a degree is lost.
+        let bits = 65u32.wrapping_sub(squared.leading_zeros()) >> 1;
+        let down = bits.saturating_sub(15);
+        let short = |length: Metres| length.bits().wrapping_shr(down);
+        let (x, y, leg) = (short(self.centre.x), short(self.centre.y), short(leg));
+        let aside = match turn {
+            Turn::Left => short(reach),
+            Turn::Right => short(reach).wrapping_neg(),
+        };
+        // The centre's vector turned by asin(reach / distance), as long as distance².
         Rotation::of_length(
             x.wrapping_mul(leg).wrapping_sub(y.wrapping_mul(aside)),
             y.wrapping_mul(leg).wrapping_add(x.wrapping_mul(aside)),
-            squared,
+            x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)) as u32,
         )
     }
 
@@ -186,7 +187,8 @@ pub struct Guidance {
     pub remaining: Metres,
     /// Times the start of a closed path was passed.
     pub laps: u16,
-    /// Speed that bends, corners and the end ahead allow, the robot's top speed at most.
+    /// Speed that bends, corners and the end ahead allow, the robot's top speed at most; that itself in a tick that does
+    /// not follow the path.
     pub speed_limit: MetresPerSecond,
     /// The path's end is reached.
     pub at_end: bool,

@@ -317,16 +317,22 @@ pub fn threat<'a>(
     avoider: &Avoider,
     now: &Situation<'a>,
 ) -> Option<&'a Obstacle> {
-    let grown = now.robot_radius + Metres::from_bits(avoider.margin.bits() >> 1);
     if now.sensed.obstacles.is_empty() {
         return None;
     }
+    let grown = now.robot_radius + Metres::from_bits(avoider.margin.bits() >> 1);
     let way = now.guidance.heading_error.rotation();
     let near = Metres::from_bits(params.enter.bits() >> 1);
     // What stands beyond the path's end is nobody's business.
-    let [far, near] = [params.enter, near].map(|limit| limit.min(now.guidance.remaining));
+    let [far, near] = [params.enter, near].map(|limit| {
+        let limit = limit.min(now.guidance.remaining);
+        (limit > Metres::ZERO).then_some(now.robot_radius + limit)
+    });
     now.sensed.obstacles.iter().find(|obstacle| {
-        let within = |limit| obstacle.is_nearer(now.robot_radius, limit);
+        let squared = obstacle.centre.norm_squared();
+        let within = |rim: Option<Metres>| {
+            rim.is_some_and(|rim| squared < square((obstacle.radius + rim).max(Metres::ZERO)))
+        };
         within(far)
             && (obstacle.covers(way, grown) || (obstacle.stands_ahead(grown) && within(near)))
     })

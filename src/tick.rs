@@ -4,7 +4,7 @@ use crate::behaviour::{avoider::avoid, fine::FineController, follower::follow};
 use crate::drive::drive;
 use crate::geometry::Pose;
 use crate::guard::guard;
-use crate::guide::{Cursor, Path, guide};
+use crate::guide::{Cursor, Path, guide, pace};
 use crate::localise::Localiser;
 use crate::params::{ParamError, Params};
 use crate::ports::{
@@ -24,10 +24,12 @@ pub enum Stage {
     Sense,
     /// Travel to pose.
     Localise,
-    /// Cursor, guidance law and speed limit.
+    /// Cursor and guidance law.
     Guide,
     /// The higher level's decision.
     Supervise,
+    /// The speed that the path ahead allows, if it is followed.
+    Pace,
     /// The lower level's tables.
     Behave,
     /// The last barrier.
@@ -216,7 +218,7 @@ impl<const N: usize> Robot<N> {
         probe.mark(Stage::Localise);
         let sensed = &self.sensed;
         let timing = (p.period, p.latency);
-        let guidance = guide(
+        let mut guidance = guide(
             &p.follower,
             &p.limits,
             timing,
@@ -237,6 +239,10 @@ impl<const N: usize> Robot<N> {
             .supervisor
             .decide(&p.supervisor, &p.avoider, &situation);
         probe.mark(Stage::Supervise);
+        if matches!(decision, Decision::Follow) {
+            guidance.speed_limit = pace(&p.follower, &p.limits, path, &mut self.cursor, &guidance);
+        }
+        probe.mark(Stage::Pace);
         let Behaviour {
             twist: desired,
             trace,

@@ -12,7 +12,7 @@
 //! Linear quantities **saturate** at the ends of their range; angles **wrap**, on purpose and for free. No
 //! operation here can panic.
 
-use crate::integer::{arctangent, saturate};
+use crate::integer::{arctangent, arctangent_of, saturate};
 use core::ops::{Add, Neg, Sub};
 use fixed::types::{I2F30, I8F24, I16F16};
 
@@ -251,9 +251,15 @@ impl Angle {
 
     /// Cosine and sine, each with an error below 2e-5; together up to 2.3e-5 short of length one (measured in
     /// `tests/numeric_bounds.rs`).
+    #[inline(never)]
     pub fn cos_sin(self) -> (I2F30, I2F30) {
         let (cos, sin) = idsp::cossin(self.0);
         (I2F30::from_bits(cos >> 1), I2F30::from_bits(sin >> 1))
+    }
+
+    /// Arctangent of a number. Within 1.3e-6 rad.
+    pub fn of_tangent(tangent: I16F16) -> Self {
+        Self(arctangent_of(tangent.to_bits()))
     }
 
     /// Direction of the vector (x, y): its scale does not matter, (0, 0) gives 0. Within 1.3e-6 rad.

@@ -18,15 +18,17 @@ use crate::fuzzy::{Position, Twin};
 use crate::geometry::square;
 use crate::integer::proper_fraction;
 use crate::params::{Avoider, Limits};
-use crate::signals::{Behaviour, Controller, Obstacle, RuleTrace, Sensed, Sight, Turn, Twist};
+use crate::signals::{
+    Behaviour, Controller, MAX_OBSTACLES, Obstacle, RuleTrace, Sensed, Sight, Turn, Twist,
+};
 use crate::tables::coarse::{Nested, SpeedShare, nested};
 use crate::units::{Angle, Metres, MetresPerSecond};
 
 /// Least angle by which a heading must clear the unfeasible region: keeps the strict ">" of the chapter after rounding.
 const EDGE: Angle = Angle::deg("0.5");
 
-/// Its tangent, 30 fractional bits.
-const EDGE_TANGENT: i32 = 9_370_403;
+/// Its tangent, 32 fractional bits.
+const EDGE_TANGENT: i32 = 37_481_612;
 
 /// Desired motion while passing `held` on its committed side. `sight` is that of `held`, grown by the robot's radius and
 /// the margin.
@@ -77,18 +79,20 @@ pub fn avoid(
         let sooner = distance < square(behind + other.radius);
         sooner && other.is_nearer(robot_radius, avoider.range)
     };
+    // Every push goes to the committed side, past one obstacle for good.
+    let mut passed = [false; MAX_OBSTACLES];
     let mut pushed = false;
-    // Every push goes to the right, past one obstacle for good: as many pushes as obstacles reach the end.
     for _ in 0..sensed.obstacles.len() {
-        let blocks = |other: &&Obstacle| other.covers(way, grown) && matters(other);
-        let Some(other) = sensed.obstacles.iter().find(blocks) else {
+        let blocking = |(other, passed): &(&Obstacle, &mut bool)| {
+            !**passed && other.covers(way, grown) && matters(other)
+        };
+        let Some((other, passed)) = sensed.obstacles.iter().zip(&mut passed).find(blocking) else {
             break;
         };
-        way = other.unfeasible_edge(grown, side).nudged(match side {
-            Turn::Right => -EDGE_TANGENT,
-            Turn::Left => EDGE_TANGENT,
-        });
-        pushed = true;
+        way = other
+            .unfeasible_edge(grown, side)
+            .nudged(side, EDGE_TANGENT);
+        (*passed, pushed) = (true, true);
     }
     if pushed {
         turned = way.angle();

@@ -23,6 +23,11 @@ impl Grade {
         }
     }
 
+    /// From a degree that is known to be one, 0 to 32 768.
+    pub(super) const fn of_degree(degree: i32) -> Self {
+        Self(degree as u16)
+    }
+
     /// 0 to 32 768.
     pub const fn bits(self) -> u16 {
         self.0

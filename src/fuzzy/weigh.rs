@@ -34,7 +34,7 @@ pub(super) struct Weighed {
 impl Weighed {
     #[inline(always)]
     pub fn grades(&self) -> [Grade; 4] {
-        self.degrees.map(|degree| Grade::from_bits(degree as u16))
+        self.degrees.map(Grade::of_degree)
     }
 }
 

@@ -9,16 +9,19 @@
 
 use super::cursor::Cursor;
 use super::path::Path;
+use super::preview::Allowed;
 use crate::geometry::{Point, Pose, root, square};
 use crate::integer::saturate;
 use crate::params::{Follower, Law, Limits};
 use crate::signals::{Guidance, Twist};
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, Seconds};
+use fixed::types::I16F16;
 
 /// What the cursor may advance in a tick although the robot stands: a pivot at a corner moves it this little.
 const SLACK: Metres = Metres::lit("0.01");
 
-/// Moves the cursor and answers where to head. `last` is the twist commanded in the tick before.
+/// Moves the cursor and answers where to head; how fast is asked of [`pace`]. `last` is the twist commanded in the tick
+/// before.
 pub fn guide(
     follower: &Follower,
     limits: &Limits,
@@ -41,8 +44,8 @@ pub fn guide(
             .min(driven + driven + driven + driven + SLACK)
     };
     let fix = cursor.advance(path, pose.at, reach);
-    let ends = !path.is_closed() && fix.remaining <= follower.arrival;
-    let elsewhere = ends && fix.distance > follower.end_radius;
+    let ends = fix.remaining <= follower.arrival;
+    let elsewhere = is_elsewhere(follower, fix.remaining, fix.distance);
     let toward = match follower.law {
         Law::Paper => fix.foot.heading,
         // No tangent leads back to an end that was passed by: head for the place itself.
@@ -51,21 +54,6 @@ pub fn guide(
     };
     // The command covers one period of travel: the curvature at its middle stands for it.
     let lead = Metres::from_bits(last.linear.over(period).bits() >> 1);
-    let squared = cursor.speed_limit_squared(
-        path,
-        limits.speed,
-        limits.acceleration,
-        follower.lateral_acceleration,
-        Metres::from_bits(follower.corner_speed.bits()),
-    );
-    // The way to a missed end is straight, and ends there.
-    let squared = if elsewhere {
-        let gain =
-            i64::from(limits.acceleration.to_bits()).wrapping_mul(fix.distance.bits().into());
-        gain.unsigned_abs().saturating_mul(2)
-    } else {
-        squared
-    };
     Guidance {
         foot: fix.foot.at,
         cross_track: fix.cross_track,
@@ -80,15 +68,46 @@ pub fn guide(
         progress: fix.progress,
         remaining: fix.remaining,
         laps: fix.laps,
-        // Most of the way the robot's own top speed is allowed: then there is no root.
-        speed_limit: if squared >= square(Metres::from_bits(limits.speed.bits())) {
-            limits.speed
-        } else {
-            MetresPerSecond::from_bits(root(squared).bits())
-        },
+        speed_limit: limits.speed,
         at_end: ends && !elsewhere,
         missed_end: elsewhere && follower.law == Law::Paper,
     }
+}
+
+/// The speed that the path ahead allows to who follows it, the robot's top speed at most. Nobody else asks: a tick that
+/// does not follow looks at nothing.
+pub fn pace(
+    follower: &Follower,
+    limits: &Limits,
+    path: &Path<'_>,
+    cursor: &mut Cursor,
+    guidance: &Guidance,
+) -> MetresPerSecond {
+    let allowed = Allowed {
+        top: limits.speed,
+        braking: limits.acceleration,
+        lateral: follower.lateral_acceleration,
+        corner: Metres::from_bits(follower.corner_speed.bits()),
+    };
+    let squared = if is_elsewhere(follower, guidance.remaining, guidance.distance) {
+        // The way to a missed end is straight, and ends there.
+        let gain =
+            i64::from(limits.acceleration.to_bits()).wrapping_mul(guidance.distance.bits().into());
+        gain.unsigned_abs().saturating_mul(2)
+    } else {
+        cursor.speed_limit_squared(path, &allowed)
+    };
+    // Most of the way the robot's own top speed is allowed: then there is no root.
+    if squared >= square(Metres::from_bits(limits.speed.bits())) {
+        limits.speed
+    } else {
+        MetresPerSecond::from_bits(root(squared).bits())
+    }
+}
+
+/// Whether the path is over and the robot is not at its end. A closed path has no length left: it is never over.
+fn is_elsewhere(follower: &Follower, remaining: Metres, distance: Metres) -> bool {
+    remaining <= follower.arrival && distance > follower.end_radius
 }
 
 /// χ∞ · (2/π) · atan(k · e).
@@ -96,7 +115,7 @@ fn approach(follower: &Follower, cross_track: Metres) -> Angle {
     let gained = saturate(
         i64::from(follower.approach_gain.bits()).wrapping_mul(cross_track.bits().into()) >> 16,
     );
-    let atan = Angle::of(1 << 16, gained);
+    let atan = Angle::of_tangent(I16F16::from_bits(gained));
     // A quarter turn of atan, 2^30, is the whole of χ∞: the factor 2/π is in the binary angle already.
     Angle::from_bits(saturate(
         i64::from(follower.approach_angle.bits()).wrapping_mul(atan.bits().into()) >> 30,

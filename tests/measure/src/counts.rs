@@ -19,7 +19,7 @@ pub const COUNTED: [(&str, &str); 5] = [
 ];
 
 /// Stages of a tick.
-const STAGES: usize = 8;
+const STAGES: usize = 9;
 
 /// Counts of one thing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub fn count(machine: &Machine, images: &Images, runs: &Counted) -> anyhow::Resu
             let counts = [
                 Some(whole[1]).filter(|count| *count > 0),
                 Some(stage(Stage::Behave)).filter(|_| avoiding),
-                Some(stage(Stage::Guide)),
+                Some(stage(Stage::Guide).saturating_add(stage(Stage::Pace))),
                 Some(stage(Stage::Sense)),
                 Some(whole[0]),
             ];

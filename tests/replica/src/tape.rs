@@ -342,7 +342,9 @@ impl RangeSensors for &Inputs {
     fn read(&mut self, readings: &mut [RangeReading]) {
         let seen = self.readings.get(..readings.len()).unwrap_or_default();
         if seen.len() == readings.len() {
-            readings.copy_from_slice(seen);
+            for (reading, seen) in readings.iter_mut().zip(seen) {
+                *reading = *seen;
+            }
         }
     }
 }

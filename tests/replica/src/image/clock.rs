@@ -83,18 +83,21 @@ pub fn thousand() -> u32 {
     since(begin)
 }
 
+/// Stages of a tick.
+const STAGES: usize = 9;
+
 /// Counts every stage of one tick.
 pub struct Clock {
     last: u32,
     /// By stage.
-    pub counts: [u32; 8],
+    pub counts: [u32; STAGES],
 }
 
 impl Clock {
     pub fn new() -> Self {
         Self {
             last: 0,
-            counts: [0; 8],
+            counts: [0; STAGES],
         }
     }
 
