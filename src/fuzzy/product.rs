@@ -12,6 +12,7 @@ pub(super) const fn mean(sum: i32, reciprocal: u32) -> i32 {
 
 /// A fraction to multiply by, `factor / 2¹⁶⁺ˢʰⁱᶠᵗ`, `shift` from 1 to 16, as the processor wants it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(narrow), repr(transparent))]
 pub(super) struct Fraction {
     #[cfg(not(narrow))]
     ready: wide::Fraction,
@@ -46,6 +47,7 @@ mod wide {
 
     /// At the top of 32 bits, so that the product's upper half is the result.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(transparent)]
     pub struct Fraction(i32);
 
     impl Fraction {

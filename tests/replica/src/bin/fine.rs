@@ -1,6 +1,6 @@
 //! The fine controller counted over a dense grid: three ways to evaluate it, the same inputs.
 //!
-//! Words in `out`: the count of nothing and of 1,000 instructions; for a call of one instruction and for each way the
+//! Words in `out`: a checksum of tables of other shapes; the count of nothing and of 1,000 instructions; for a call of one instruction and for each way the
 //! least and the greatest count, a checksum of all outputs, and how deep the stack goes below its caller's caller.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -29,6 +29,7 @@ mod image {
     use fuzzypilot::units::{Angle, Metres};
     use replica::fine::{CONTROLLER, grid, mix};
     use replica::owned::Owned;
+    use replica::shapes;
 
     static OUTPUT: Owned<Output> = Owned::new(Output::new());
 
@@ -39,6 +40,7 @@ mod image {
         if output.create().is_none() {
             semihosting::process::exit(1);
         }
+        output.word(shapes::checksum());
         clock::start();
         output.word(clock::empty());
         output.word(clock::thousand());
