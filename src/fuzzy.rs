@@ -33,8 +33,8 @@
 //! | work | four rules; divides once, or by products alone | four rules, one division an output | every rule, every sample |
 //! | chosen by the type | [`TwinTable`] | [`Antecedents`] and [`RuleTable`] | [`system::System`] |
 //!
-//! With physical units in and out, two outputs of 5 × 5 rules cost a [`TwinTable`] and its scales
-//! at most 49 instructions on a Cortex-M4F, 160 on a Cortex-M0 and 99 on a RISC-V rv32imc, the same for every input, and
+//! With physical units in and out, two outputs of 5 × 5 rules cost a [`MirroredTwin`], which is a [`TwinTable`] and its scales,
+//! at most 45 instructions on a Cortex-M4F, 160 on a Cortex-M0 and 99 on a RISC-V rv32imc, the same for every input, and
 //! at most 512 bytes of flash: `cargo engine` counts them, and fails where it is more.
 //!
 //! All three do the same work for every input, give the same bits on every machine, cannot panic and are checked while they
@@ -69,6 +69,7 @@
 mod dsp;
 mod even;
 mod inference;
+mod mirrored;
 mod partition;
 mod product;
 mod reciprocal;
@@ -80,6 +81,7 @@ mod weigh;
 
 pub use even::Position;
 pub use inference::{Activation, ActiveRules, Antecedents, FiredRule};
+pub use mirrored::{Mirrored, MirroredTwin};
 pub use partition::{Grade, Membership, Partition};
 pub use rules::{Consequents, FixedOutput, MAX_TERMS, RuleTable, Term};
 pub use scale::{InputScale, OutputScale};

@@ -5,10 +5,11 @@ use fixed::FixedI16;
 use fixed::types::I16F16;
 use fixed::types::extra::{U8, U13};
 use fuzzypilot::fuzzy::{
-    Antecedents, Consequents, InputScale, OutputScale, Partition, Position, RuleTable, Term, Twin,
-    TwinTable,
+    Antecedents, Consequents, InputScale, MirroredTwin, OutputScale, Partition, Position,
+    RuleTable, Term, Twin, TwinTable,
 };
 use proptest::prelude::*;
+use std::sync::LazyLock;
 
 const WIDE: f64 = (1 << Twin::<2, 2>::EXTRA_BITS) as f64;
 
@@ -335,4 +336,47 @@ fn an_output_scale_at_its_ends() {
         [-5, -4, -1, 0, 3, 4, 7].map(|wide| apply(1, 4, wide)),
         [-2, -1, -1, 0, 0, 1, 1]
     );
+}
+
+/// A mirrored twin is its parts in a row: the magnitude on the rows' axis, the columns' scale, the tables, the outputs'
+/// scales, and the sign again.
+#[test]
+fn a_mirrored_twin_is_odd_in_its_rows() {
+    static TABLE: LazyLock<TwinTable<3, 4, 2>> = LazyLock::new(|| {
+        let base = Base {
+            peaks: [
+                vec![-32_767, -9, 0, 1, 5, 77, 32_767],
+                vec![-3, -2, -1, 4, 900, 8_000, 30_000],
+            ],
+            cells: (0..98u16)
+                .map(|cell| ((cell * 5 + cell / 7) % 7) as u8)
+                .collect(),
+            positions: Vec::new(),
+        };
+        let (antecedents, first, second) = rules::<3, 4>(&base);
+        TwinTable::new(&antecedents, &first, &second)
+    });
+    let (columns, scales) = (
+        InputScale::new(163_840),
+        [OutputScale::new(1, 3), OutputScale::new(1, 700)],
+    );
+    let mirrored = MirroredTwin::new(&*TABLE, columns, scales);
+    let rows = (0..200).map(|i| i * 10_737_417).chain([0, 1, i32::MAX]);
+    for row in rows {
+        for column in (-2..30).map(|i| i * 1009).chain([i32::MIN, i32::MAX]) {
+            let at = (
+                Position::from_bits(row as u32 * 2),
+                columns.position(column),
+            );
+            let twin = TABLE.evaluate(at.0, at.1);
+            let [first, second] = [twin.first, twin.second];
+            let (first, second) = (scales[0].apply(first), scales[1].apply(second));
+            for (row, second) in [(row, second), (!row, -second)] {
+                let got = mirrored.evaluate(row, column);
+                assert_eq!(got, mirrored.evaluate_plain(row, column));
+                assert_eq!((got.first, got.second), (first, second), "{row} {column}");
+                assert_eq!((got.row, got.column, got.twin), (at.0, at.1, twin));
+            }
+        }
+    }
 }

@@ -34,6 +34,9 @@ const FAMILY: &str = "Ubuntu, Helvetica, Arial, sans-serif";
 /// Pixels of PNG a pixel of the figure in [`write_pair`].
 const PNG_SCALE: f32 = 2.0;
 
+/// Pixels across a figure.
+const WIDTH: f64 = 1200.0;
+
 const INK: RGBColor = RGBColor(0x22, 0x26, 0x2B);
 const MUTED: RGBColor = RGBColor(0x5F, 0x66, 0x6E);
 const GRID: RGBColor = RGBColor(0xE3, 0xE6, 0xE9);
@@ -365,6 +368,13 @@ impl Canvas<'_> {
         Ok(())
     }
 
+    /// The title of a figure, as much of it as fits.
+    fn heading(&self, title: &str) -> Result<()> {
+        let (left, size) = (82.0, 22.0);
+        let title = fitted(title, size, WIDTH - 28.0 - left);
+        self.text(&title, (left, 28.0), size, INK, FROM_LEFT)
+    }
+
     fn text(&self, text: &str, at: Point, size: f64, colour: RGBColor, hang: Hang) -> Result<()> {
         let clean = printable(text);
         let turn = if hang.2 {
@@ -666,6 +676,26 @@ impl Placer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An axis in degrees, to draw.
+    pub(super) fn axis(name: &str, terms: &[(&str, f64)], range: (f64, f64)) -> Axis {
+        Axis {
+            name: name.to_owned(),
+            unit: "°".to_owned(),
+            terms: terms
+                .iter()
+                .map(|&(name, peak)| (name.to_owned(), peak))
+                .collect(),
+            range,
+        }
+    }
+
+    /// A figure, once it was seen to be one.
+    pub(super) fn sound(svg: String) -> String {
+        assert!(svg.len() < 2_000_000 && !svg.contains("NaN"));
+        assert_eq!(&png(&svg, 0.5).unwrap()[1..4], b"PNG");
+        svg
+    }
 
     #[test]
     fn steps_are_round_and_ticks_lie_inside() {

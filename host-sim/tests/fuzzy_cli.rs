@@ -270,6 +270,85 @@ fn what_is_denied_fails() {
     assert_eq!(denied("holes").0, Some(2));
 }
 
+/// The fast route's error is that which its modules announce, and counts where a module would take it.
+#[test]
+fn an_error_above_the_limit_fails() {
+    let dir = tempdir().unwrap();
+    let said = done(dir.path(), &["check", FAN, "--points", "1000"]);
+    let rows = rows(&said);
+    let share = |row: &[String]| row[8].trim_end_matches(" %").parse::<f64>().unwrap();
+    let [general, fast] = ["≥ 1/2", "fast route"].map(|line| {
+        let row = rows
+            .iter()
+            .find(|row| row.get(1).is_some_and(|cell| cell == line));
+        share(row.unwrap())
+    });
+    assert!(general < 0.01 && fast > 0.01, "{said}");
+    let module = done(dir.path(), &["convert", FAN, "--to", "rust"]);
+    let announced = module
+        .lines()
+        .find(|line| line.ends_with("of `fan`"))
+        .unwrap();
+    let announced: f64 = announced["//! * ".len()..]
+        .split(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    // Of a range of 100; the table has two digits.
+    assert!(
+        (announced - fast).abs() <= 0.06 * fast,
+        "{announced} for {fast}"
+    );
+
+    let limited = |limit: &str, route: &str| {
+        let output = sim(dir.path())
+            .args([
+                "check",
+                FAN,
+                "--points",
+                "1000",
+                "--max-error",
+                limit,
+                "--route",
+                route,
+            ])
+            .assert();
+        let output = output.get_output().clone();
+        let said = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), said)
+    };
+    let (code, said) = limited("0.01", "auto");
+    assert_eq!(code, Some(1));
+    assert!(
+        said.contains("off by up to fan 0.011 % (fast route), and --max-error allows 0.01 %"),
+        "{said}"
+    );
+    assert_eq!(limited("0.02", "fast").0, Some(0));
+    assert_eq!(limited("0.01", "general").0, Some(0));
+    let (code, said) = limited("1e-6", "general");
+    assert_eq!(code, Some(1));
+    assert!(said.contains("(≥ 1/2)"), "{said}");
+    for wrong in ["0", "-1", "NaN", "101", "much"] {
+        assert_eq!(limited(wrong, "auto").0, Some(2), "{wrong}");
+    }
+    // Nothing can be promised of what has no fixed point, nor of a design that the route does not take.
+    let dir = with(&BOILER.replace("range: 0 1\n", "range: 1e12 1000000000001\n"));
+    sim(dir.path())
+        .args(["check", "design.fll", "--max-error", "50"])
+        .assert()
+        .code(1);
+    sim(dir.path())
+        .args(["check", "design.fll", "--route", "general"])
+        .assert()
+        .code(0);
+    let dir = with(BOILER);
+    sim(dir.path())
+        .args(["check", "design.fll", "--route", "fast"])
+        .assert()
+        .code(2);
+}
+
 #[test]
 fn a_design_without_fixed_point_is_evaluated_in_f64_and_says_why() {
     let far = "range: 1e12 1000000000001";

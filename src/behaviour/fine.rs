@@ -3,7 +3,7 @@
 //! The axes of the tables and the robot's own scales meet here, once: [`FineController::new`] folds d's scale, the top
 //! speed and the deflection rate into one factor each. In a `const` they are the code's own constants.
 
-use crate::fuzzy::{InputScale, OutputScale, Position, Twin};
+use crate::fuzzy::{InputScale, Mirrored, MirroredTwin, OutputScale, Position, Twin};
 use crate::params::{Follower, Limits};
 use crate::signals::{Controller, RuleTrace};
 use crate::tables::fine::{Deflection, FineTwin, SPEED_AXIS, Speed, SpeedAxis};
@@ -11,12 +11,7 @@ use crate::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond};
 
 /// Fine tables and the scales of their inputs and outputs.
 #[derive(Clone, Copy, Debug)]
-pub struct FineController {
-    twin: &'static FineTwin,
-    distance: InputScale,
-    speed: OutputScale,
-    yaw_rate: OutputScale,
-}
+pub struct FineController(MirroredTwin<5, 5, 4>);
 
 /// What one evaluation gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,60 +60,38 @@ impl FineController {
         let rate = if rate > 0 { rate as u64 } else { 0 };
         // π in Q30 by 180°.
         let radians = (3_373_259_426, 180 << (Deflection::FRAC_NBITS + extra + 30));
-        Self {
-            twin,
-            distance: InputScale::new(distance),
-            speed,
-            yaw_rate: OutputScale::new(rate * radians.0, radians.1),
-        }
+        let yaw_rate = OutputScale::new(rate * radians.0, radians.1);
+        let distance = InputScale::new(distance);
+        // Half a turn is the angle's axis.
+        Self(MirroredTwin::new(twin, distance, [speed, yaw_rate]))
     }
 
     /// Equations 7.2 and 7.3 with their scales. d below 0 counts as 0, above its axis as its end; the magnitude of a
     /// heading error to the right is taken one step of 2⁻³² of a turn less.
     #[inline(always)]
     pub fn evaluate(&self, d: Metres, heading_error: Angle) -> FineMotion {
-        let (angle, distance) = self.positions(d, heading_error);
-        let twin = self.twin.evaluate(angle, distance);
-        self.motion(angle, distance, twin, heading_error)
+        FineMotion::of(self.0.evaluate(heading_error.bits(), d.bits()))
     }
 
     /// [`evaluate`](Self::evaluate) without any processor's own instructions: the same result on every one.
     #[inline(always)]
     pub fn evaluate_plain(&self, d: Metres, heading_error: Angle) -> FineMotion {
-        let (angle, distance) = self.positions(d, heading_error);
-        let twin = self.twin.evaluate_plain(angle, distance);
-        self.motion(angle, distance, twin, heading_error)
-    }
-
-    #[inline(always)]
-    fn positions(&self, d: Metres, heading_error: Angle) -> (Position, Position) {
-        let error = heading_error.bits();
-        // Half a turn is the axis: 2^31 of its 2^32 steps.
-        let angle = Position::from_bits(((error ^ (error >> 31)) as u32) << 1);
-        (angle, self.distance.position(d.bits()))
-    }
-
-    #[inline(always)]
-    fn motion(
-        &self,
-        angle: Position,
-        distance: Position,
-        twin: Twin<5, 5>,
-        heading_error: Angle,
-    ) -> FineMotion {
-        let right = heading_error.bits() >> 31;
-        let yaw_rate = self.yaw_rate.apply(twin.second);
-        FineMotion {
-            speed: MetresPerSecond::from_bits(self.speed.apply(twin.first)),
-            yaw_rate: RadiansPerSecond::from_bits((yaw_rate ^ right).wrapping_sub(right)),
-            distance,
-            angle,
-            twin,
-        }
+        FineMotion::of(self.0.evaluate_plain(heading_error.bits(), d.bits()))
     }
 }
 
 impl FineMotion {
+    #[inline(always)]
+    fn of(mirrored: Mirrored<5, 5>) -> Self {
+        Self {
+            speed: MetresPerSecond::from_bits(mirrored.first),
+            yaw_rate: RadiansPerSecond::from_bits(mirrored.second),
+            distance: mirrored.column,
+            angle: mirrored.row,
+            twin: mirrored.twin,
+        }
+    }
+
     /// Inputs and outputs on their axes, and the rules.
     pub fn trace(&self) -> RuleTrace {
         let [speed_output, deflection_output] = self.twin.rounded();

@@ -12,6 +12,7 @@ pub(super) const fn mean(sum: i32, reciprocal: u32) -> i32 {
 
 /// A fraction to multiply by, `factor / 2¹⁶⁺ˢʰⁱᶠᵗ`, `shift` from 1 to 16, as the processor wants it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(not(narrow), repr(transparent))]
 pub(super) struct Fraction {
     #[cfg(not(narrow))]
     ready: wide::Fraction,
@@ -46,6 +47,7 @@ mod wide {
 
     /// At the top of 32 bits, so that the product's upper half is the result.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(transparent)]
     pub struct Fraction(i32);
 
     impl Fraction {
@@ -76,12 +78,15 @@ mod narrow {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub struct Fraction {
         factor: u16,
-        shift: u8,
+        shift: Shift,
     }
 
     impl Fraction {
         pub const fn new(factor: u16, shift: u8) -> Self {
-            Self { factor, shift }
+            Self {
+                factor,
+                shift: SHIFTS[shift.wrapping_sub(1) as usize & 15],
+            }
         }
 
         #[inline(always)]
@@ -89,6 +94,18 @@ mod narrow {
             times(value, self.factor as u32).wrapping_shr(self.shift as u32)
         }
     }
+
+    /// 1 to 16, and the compiler knows: of a shift below 32 it masks nothing out.
+    #[rustfmt::skip]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(u8)]
+    enum Shift { N1 = 1, N2, N3, N4, N5, N6, N7, N8, N9, N10, N11, N12, N13, N14, N15, N16 }
+
+    #[rustfmt::skip]
+    const SHIFTS: [Shift; 16] = {
+        use Shift::*;
+        [N1, N2, N3, N4, N5, N6, N7, N8, N9, N10, N11, N12, N13, N14, N15, N16]
+    };
 
     /// `value · factor / 2^16`, rounded down, for a factor up to 2^16.
     #[inline(always)]

@@ -8,6 +8,7 @@ use super::product::Fraction;
 
 /// From a raw fixed-point number, 0 at an axis' first peak, to a position on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
 pub struct InputScale {
     /// Steps of 2⁻³² of the axis for one count.
     gain: u32,
@@ -42,6 +43,7 @@ impl InputScale {
 
 /// From a defuzzified number to a raw fixed-point one: a fraction of 16 significant bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
 pub struct OutputScale(Fraction);
 
 impl OutputScale {

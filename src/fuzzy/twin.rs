@@ -10,11 +10,12 @@
 
 use super::even::{Place, Position, are_even};
 use super::product::mean;
-use super::weigh::{Edge, Weighed, factor, weigh};
+use super::weigh::{Edge, Weighed, factor, grades, weigh};
 use super::{Activation, Antecedents, RuleTable};
 
 /// Two complete rule tables of `R × C` rules over even partitions. `GAPS` is `R − 1`.
 #[derive(Clone, Debug)]
+#[repr(transparent)]
 pub struct TwinTable<const R: usize, const C: usize, const GAPS: usize> {
     edges: [[Edge; C]; GAPS],
 }
@@ -40,7 +41,20 @@ impl<const R: usize, const C: usize> Twin<R, C> {
         Self {
             first: mean(first, weighed.reciprocal),
             second: mean(second, weighed.reciprocal),
-            activation: Activation::at(row.lower, col.lower, weighed.grades()),
+            activation: Activation::at(row.lower, col.lower, grades(weighed.degrees)),
+        }
+    }
+
+    /// Of what is computed already.
+    #[cfg(dsp)]
+    #[inline(always)]
+    pub(super) fn of(row: Position, col: Position, means: [i32; 2], degrees: [i32; 4]) -> Self {
+        let [first, second] = means;
+        let (row, col) = (row.place::<R>(), col.place::<C>());
+        Self {
+            first,
+            second,
+            activation: Activation::at(row.lower, col.lower, grades(degrees)),
         }
     }
 
@@ -59,6 +73,10 @@ const fn round(wide: i32) -> i16 {
 }
 
 impl<const R: usize, const C: usize, const GAPS: usize> TwinTable<R, C, GAPS> {
+    /// Bytes from one row of edges to the next.
+    #[cfg(dsp)]
+    pub(super) const STRIDE: u32 = size_of::<[Edge; C]>() as u32;
+
     /// From the inputs' partitions and the two outputs' tables.
     ///
     /// In a `const` or `static` these do not compile (at run time they panic, so keep it in one): peaks of an input that

@@ -31,11 +31,10 @@ pub(super) struct Weighed {
     pub reciprocal: u32,
 }
 
-impl Weighed {
-    #[inline(always)]
-    pub fn grades(&self) -> [Grade; 4] {
-        self.degrees.map(Grade::of_degree)
-    }
+/// Degrees as they are shown.
+#[inline(always)]
+pub(super) fn grades(degrees: [i32; 4]) -> [Grade; 4] {
+    degrees.map(Grade::of_degree)
 }
 
 /// Weighs the rules around an input; `edges` are those between its two rows.

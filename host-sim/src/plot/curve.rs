@@ -1,7 +1,7 @@
 //! The output of a controller with one input.
 
 use super::axis::Axis;
-use super::{FROM_LEFT, INK, MUTED, Panel, Point, Rect, document, extent, fitted, ticks, viridis};
+use super::{FROM_LEFT, MUTED, Panel, Point, Rect, WIDTH, document, extent, ticks, viridis};
 use anyhow::{Result, ensure};
 use plotters::style::Color;
 
@@ -33,17 +33,11 @@ pub fn curve_svg(
     let least = 0.02 * (output.range.1 - output.range.0);
     let pad = 0.05 * (high - low).max(least) + (least - (high - low)).max(0.0) / 2.0;
     let y = low - pad..high + pad;
-    let (width, height) = (1200.0, 470.0);
-    document(width, height, |canvas| {
-        canvas.text(
-            &fitted(title, 22.0, width - 110.0),
-            (82.0, 28.0),
-            22.0,
-            INK,
-            FROM_LEFT,
-        )?;
+    let height = 470.0;
+    document(WIDTH, height, |canvas| {
+        canvas.heading(title)?;
         let panel = Panel {
-            rect: Rect::new(92.0, 60.0, width - 120.0, height - 122.0),
+            rect: Rect::new(92.0, 60.0, WIDTH - 120.0, height - 122.0),
             x: input.span(),
             x_ticks: input.ticks(12.0),
             y_ticks: ticks(&y, 7.0),
@@ -71,16 +65,7 @@ pub fn curve_svg(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::png;
-
-    fn axis(range: (f64, f64)) -> Axis {
-        Axis {
-            name: "x".to_owned(),
-            unit: String::new(),
-            terms: Vec::new(),
-            range,
-        }
-    }
+    use crate::plot::tests::{axis, sound};
 
     #[test]
     fn lines_gaps_and_flat_ones_can_be_drawn() {
@@ -90,17 +75,11 @@ mod tests {
             &|_| Some(3.0),
             &|_| None,
         ];
+        let (input, output) = (axis("x", &[], (0.0, 2.0)), axis("y", &[], (0.0, 4.0)));
         for eval in eval {
-            let svg = curve_svg("curve", &axis((0.0, 2.0)), &axis((0.0, 4.0)), eval).unwrap();
-            assert!(!svg.contains("NaN"));
+            let svg = sound(curve_svg("curve", &input, &output, eval).unwrap());
             assert_eq!(svg.contains("no rule fires"), eval(0.5).is_none());
-            assert_eq!(&png(&svg, 0.5).unwrap()[1..4], b"PNG");
         }
-        assert!(
-            curve_svg("", &axis((0.0, 2.0)), &axis((0.0, 4.0)), &|_| Some(
-                f64::NAN
-            ))
-            .is_err()
-        );
+        assert!(curve_svg("", &input, &output, &|_| Some(f64::NAN)).is_err());
     }
 }

@@ -7,12 +7,11 @@ use anyhow::{Result, ensure};
 use plotters::style::{Color, RGBAColor, RGBColor};
 
 use super::{
-    CENTRED, Canvas, FRAME, FROM_LEFT, INK, MUTED, Panel, Placer, Point, Rect, document, extent,
-    fitted, nice_step, text_width, tick_text, ticks, ticks_by,
+    CENTRED, Canvas, FRAME, FROM_LEFT, INK, MUTED, Panel, Placer, Point, Rect, WIDTH, document,
+    extent, fitted, nice_step, text_width, tick_text, ticks, ticks_by,
 };
 use crate::recording::{BeamView, Disc, Frame, Recording};
 
-const WIDTH: f64 = 1200.0;
 const LEFT: f64 = 96.0;
 const RIGHT: f64 = 1172.0;
 const MAP_TOP: f64 = 104.0;

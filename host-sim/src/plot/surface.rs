@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::axis::Axis;
 use super::{
     CENTRED, Canvas, FRAME, FROM_LEFT, FROM_RIGHT, GRID, INK, MUTED, Panel, Point, Rect, UPWARD,
-    between, decimals, distance, document, extent, fitted, shaded, text_width, tick_text, ticks,
-    viridis,
+    WIDTH, between, decimals, distance, document, extent, fitted, shaded, text_width, tick_text,
+    ticks, viridis,
 };
 
 /// A two-input controller to draw.
@@ -30,7 +30,6 @@ pub struct SurfaceSpec<'a> {
     pub eval: &'a (dyn Fn(f64 /* row input */, f64 /* col input */) -> Option<f64> + Sync),
 }
 
-const WIDTH: f64 = 1200.0;
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 /// Where the output has no value.
 const NOTHING: RGBColor = RGBColor(0xD3, 0xD6, 0xDA);
@@ -69,13 +68,7 @@ pub fn surface_svg(spec: &SurfaceSpec) -> Result<String> {
         fine = Field::sample(spec, FINE_CELLS / 2)?;
     }
     document(WIDTH, 620.0, |canvas| {
-        canvas.text(
-            &fitted(&spec.title, 22.0, WIDTH - 110.0),
-            (82.0, 28.0),
-            22.0,
-            INK,
-            FROM_LEFT,
-        )?;
+        canvas.heading(&spec.title)?;
         let note = fitted(&spec.note, 14.0, WIDTH - 110.0);
         canvas.text(&note, (82.0, 54.0), 14.0, MUTED, FROM_LEFT)?;
         heat_map(canvas, spec, &fine, &range)?;
@@ -707,19 +700,7 @@ fn mesh(canvas: &Canvas, field: &Field, range: &Range<f64>, view: &View) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::png;
-
-    fn axis(name: &str, terms: &[(&str, f64)], range: (f64, f64)) -> Axis {
-        Axis {
-            name: name.to_owned(),
-            unit: "°".to_owned(),
-            terms: terms
-                .iter()
-                .map(|&(name, peak)| (name.to_owned(), peak))
-                .collect(),
-            range,
-        }
-    }
+    use crate::plot::tests::{axis, sound};
 
     type Eval<'a> = &'a (dyn Fn(f64, f64) -> Option<f64> + Sync);
 
@@ -746,11 +727,6 @@ mod tests {
         }
     }
 
-    fn sound(svg: &str) {
-        assert!(svg.len() < 2_000_000 && !svg.contains("NaN"));
-        assert_eq!(&png(svg, 0.5).unwrap()[1..4], b"PNG");
-    }
-
     #[test]
     fn every_shape_of_surface_can_be_drawn() {
         let shapes: [Eval; 7] = [
@@ -763,7 +739,7 @@ mod tests {
             &|_, _| None,
         ];
         for shape in shapes {
-            sound(&surface_svg(&spec(shape)).unwrap());
+            sound(surface_svg(&spec(shape)).unwrap());
         }
     }
 

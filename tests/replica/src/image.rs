@@ -6,12 +6,6 @@
 //! | stages | the same two, of marks; a tick: its stages in the order of [`Stage`](fuzzypilot::tick::Stage) |
 //! | stack | a tick: bytes of stack |
 
-mod clock;
-mod files;
-mod stack;
-
-use clock::{Clock, now, since};
-use files::{Input, Output};
 use fuzzypilot::behaviour::fine::FineController;
 use fuzzypilot::geometry::Pose;
 use fuzzypilot::guide::Path;
@@ -22,7 +16,10 @@ use fuzzypilot::presets;
 use fuzzypilot::signals::{Controller, TickRecord, Twist};
 use fuzzypilot::tick::Robot;
 use fuzzypilot::units::{Angle, Metres};
+use replica::clock::{self, Clock, now, since};
+use replica::files::{Input, Output};
 use replica::owned::Owned;
+use replica::stack;
 use replica::tape::{self, Inputs, Mode, NoWheels, Source, Store};
 
 /// All that is large: statics, because the smallest machine has 16 KiB.

@@ -1,21 +1,25 @@
 //! `host-sim fuzzy check`
 
+use super::convert::Route;
 use super::design::Design;
 use super::table::{right, table};
-use crate::cli::{print, whole};
+use crate::cli::{BadInput, number as between, print, whole};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use comfy_table::{Cell, Table};
-use host_sim::fuzzy::check::{Coverage, Gap, POINTS, Report, STRENGTHS, Turn, check};
+use host_sim::fuzzy::check::{
+    Class, Coverage, Errors, Gap, POINTS, Report, STRENGTHS, Turn, check,
+};
 use host_sim::fuzzy::describe::{self, number, percent};
+use host_sim::fuzzy::emit::{self, rust};
 use host_sim::fuzzy::evaluate::rules;
 use host_sim::fuzzy::model::System;
 use std::collections::BTreeSet;
 
 #[derive(Args)]
 #[command(
-    after_help = "Exit code: 0, whatever is found; 1 if something is found that --deny names; 2 if the file is \
-no design."
+    after_help = "Exit code: 0, whatever is found; 1 if something is found that --deny names, or an error above \
+--max-error; 2 if the file is no design."
 )]
 pub struct CheckArguments {
     #[command(flatten)]
@@ -23,6 +27,13 @@ pub struct CheckArguments {
     /// Findings that make the command fail, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FINDING,…")]
     deny: Vec<Finding>,
+    /// Fail if fixed point may be off by more than this, in per cent of an output's range: the largest of what is printed as
+    /// "nowhere above".
+    #[arg(long, value_parser = between(1e-9, 100.0), value_name = "PERCENT", allow_hyphen_values = true)]
+    max_error: Option<f64>,
+    /// Which part of the library is to evaluate the design as a Rust module, see `convert`: the fast one has an error of its own.
+    #[arg(long, value_enum, default_value_t = Route::Auto)]
+    route: Route,
     /// Points of the grid on which fixed point is compared with f64 and rules with each other.
     #[arg(long, default_value_t = POINTS as u64, value_parser = whole(16, 10_000_000), allow_hyphen_values = true)]
     points: u64,
@@ -46,6 +57,9 @@ enum Finding {
 /// [`STRENGTHS`] as they are printed.
 const SHOWN_STRENGTHS: [&str; STRENGTHS.len()] = ["≥ 1/2", "≥ 1/8", "≥ 1/64", "> 0"];
 
+/// The line of the fast route.
+const FAST: &str = "fast route";
+
 /// Most lines of a list.
 const MOST_LINES: usize = 20;
 
@@ -59,6 +73,7 @@ pub fn execute(arguments: &CheckArguments) -> anyhow::Result<()> {
     let shown = Shown {
         system: &design.system,
         report: &report,
+        fast: fast(&design, arguments)?,
     };
     print(format_args!("{}\n", shown.heading(&design.title())))?;
     let mut found = BTreeSet::new();
@@ -82,10 +97,47 @@ pub fn execute(arguments: &CheckArguments) -> anyhow::Result<()> {
         .filter(|finding| found.contains(finding))
         .filter_map(|finding| Some(finding.to_possible_value()?.get_name().to_owned()))
         .collect();
+    let mut failed = Vec::new();
     if !denied.is_empty() {
-        bail!("{}: found, and denied by --deny", denied.join(", "));
+        failed.push(format!(
+            "{}: found, and denied by --deny",
+            denied.join(", ")
+        ));
+    }
+    if let Some(limit) = arguments.max_error {
+        failed.extend(shown.beyond(limit));
+    }
+    if !failed.is_empty() {
+        bail!(failed.join("; "));
     }
     Ok(())
+}
+
+/// What a module of the fast route may be off, an entry an output; `None` if the design is evaluated by the general one.
+fn fast(design: &Design, arguments: &CheckArguments) -> anyhow::Result<Option<Vec<f64>>> {
+    let (Ok(lowered), Route::Auto | Route::Fast) = (&design.fixed, arguments.route) else {
+        return Ok(None);
+    };
+    let emitted = emit::Design {
+        system: &design.system,
+        lowered,
+        name: &design.stem,
+        command: "",
+        bounds: None,
+    };
+    match (emitted.rule_base(), arguments.route) {
+        (Ok(base), _) => {
+            let outputs = 0..base.tables.len();
+            Ok(Some(
+                outputs.map(|o| rust::output_error(&base, o)).collect(),
+            ))
+        }
+        (Err(why), Route::Fast) => {
+            let file = arguments.design.file.display();
+            Err(BadInput(super::convert::unfit(&file, &why)).into())
+        }
+        (Err(_), _) => Ok(None),
+    }
 }
 
 /// A part of the report, and what it found, if anything.
@@ -124,6 +176,26 @@ impl Section {
 struct Shown<'a> {
     system: &'a System,
     report: &'a Report,
+    /// See [`fast`].
+    fast: Option<Vec<f64>>,
+}
+
+/// A class of points that says something: its [`SHOWN_STRENGTHS`], what was measured and what it is nowhere above.
+type Line<'a> = (&'static str, &'a Class, f64);
+
+/// The classes of an output, without those that add no point to the one before.
+fn lines(errors: &Errors) -> Vec<Line<'_>> {
+    let all = SHOWN_STRENGTHS
+        .into_iter()
+        .zip(&errors.measured.classes)
+        .zip(errors.bounds);
+    let mut seen = 0;
+    all.filter_map(|((strength, class), bound)| {
+        let new = class.points != seen;
+        seen = class.points;
+        new.then_some((strength, class, bound))
+    })
+    .collect()
 }
 
 impl Shown<'_> {
@@ -330,24 +402,11 @@ impl Shown<'_> {
             "nowhere above",
             "of its range",
         ]);
-        for (output, errors) in self.system.outputs.iter().zip(errors) {
+        for (o, (output, errors)) in self.system.outputs.iter().zip(errors).enumerate() {
             let span = output.range.end() - output.range.start();
-            let mut seen = 0;
-            for ((class, bound), strength) in errors
-                .measured
-                .classes
-                .iter()
-                .zip(errors.bounds)
-                .zip(SHOWN_STRENGTHS)
-            {
-                // A class that adds no point and no worse bound says nothing new.
-                if class.points == seen {
-                    continue;
-                }
-                let first = seen == 0;
-                seen = class.points;
+            for (i, (strength, class, bound)) in lines(errors).into_iter().enumerate() {
                 text.add_row([
-                    Cell::new(if first { output.name.as_str() } else { "" }),
+                    Cell::new(if i == 0 { output.name.as_str() } else { "" }),
                     right(strength),
                     right(class.points),
                     right(format!("{:.1e}", class.rms())),
@@ -358,13 +417,56 @@ impl Shown<'_> {
                     right(share(bound / span)),
                 ]);
             }
+            if let Some(bound) = self.fast.as_ref().and_then(|fast| fast.get(o)) {
+                let mut row = ["", FAST, "", "", "", "", ""].map(Cell::new).to_vec();
+                row.push(right(format!("{bound:.1e}")));
+                row.push(right(share(bound / span)));
+                text.add_row(row);
+            }
         }
+        let fast = match &self.fast {
+            Some(_) => {
+                "\"fast route\" is what a Rust module may be off that the library's tables of four rules evaluate, as `convert \
+                 --to rust`\nmakes it of this design; --route general is for the other one.\n"
+            }
+            None => "",
+        };
         format!(
             "fixed point against f64, on a grid of {} points:\n{text}\n\
              \"nowhere above\" holds between the points too: it is found from the terms' errors and the least weight, box by \
-             box.\n",
+             box.\n{fast}",
             self.report.points
         )
+    }
+
+    /// What may be off by more than `limit` per cent of its output's range.
+    fn beyond(&self, limit: f64) -> Option<String> {
+        let Some(errors) = &self.report.errors else {
+            return Some("no fixed point, and --max-error asks how far it is off".to_owned());
+        };
+        let mut beyond = Vec::new();
+        for (o, (output, errors)) in self.system.outputs.iter().zip(errors).enumerate() {
+            let span = output.range.end() - output.range.start();
+            let fast = self.fast.as_ref().and_then(|fast| fast.get(o));
+            let bounds = lines(errors)
+                .into_iter()
+                .map(|(strength, _, bound)| (strength, bound))
+                .chain(fast.map(|bound| (FAST, *bound)));
+            let Some((which, worst)) = bounds.max_by(|a, b| a.1.total_cmp(&b.1)) else {
+                continue;
+            };
+            if 100.0 * worst / span > limit {
+                let name = &output.name;
+                beyond.push(format!("{name} {} ({which})", share(worst / span)));
+            }
+        }
+        (!beyond.is_empty()).then(|| {
+            format!(
+                "off by up to {}, and --max-error allows {} %",
+                beyond.join(", "),
+                number(limit)
+            )
+        })
     }
 }
 

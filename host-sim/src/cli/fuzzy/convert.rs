@@ -50,8 +50,9 @@ enum To {
     C,
 }
 
+/// Which part of the library evaluates a design as a Rust module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Route {
+pub enum Route {
     /// The fast one where the design is what it takes.
     Auto,
     /// Two inputs divided between peaks, a complete table of constants: four rules an evaluation.
@@ -145,12 +146,13 @@ fn code(arguments: &ConvertArguments, system: &System) -> anyhow::Result<()> {
         return c(arguments, &design);
     }
     let route = arguments.route.unwrap_or(Route::Auto).route();
-    let text = rust::write(&design, route).map_err(|why| {
-        BadInput(format!(
-            "{file}: --route fast does not fit: {why}; allowed is --route general"
-        ))
-    })?;
+    let text = rust::write(&design, route).map_err(|why| BadInput(unfit(&file, &why)))?;
     written(arguments, text)
+}
+
+/// That a design in `file` is not for the fast route.
+pub fn unfit(file: &impl std::fmt::Display, why: &str) -> String {
+    format!("{file}: --route fast does not fit: {why}; allowed is --route general")
 }
 
 /// The two files of C.

@@ -19,7 +19,8 @@ pub struct Counted {
 ///
 /// # Errors
 ///
-/// Counts that differ from input to input; outputs whose checksum is not `expected`.
+/// Counts that differ from input to input; outputs whose checksum is not `expected`; tables of other shapes that give
+/// other results than here.
 pub fn count(machine: &Machine, images: &Images, expected: u32) -> anyhow::Result<Counted> {
     let folder = tempfile::tempdir()?;
     let words = machine
@@ -30,9 +31,14 @@ pub fn count(machine: &Machine, images: &Images, expected: u32) -> anyhow::Resul
             Time::Counted,
         )?
         .words()?;
-    let [empty, thousand, call, _, _, bottom, ways @ ..] = words.as_slice() else {
+    let [shapes, empty, thousand, call, _, _, bottom, ways @ ..] = words.as_slice() else {
         bail!("{}: nothing was counted", machine.name);
     };
+    ensure!(
+        *shapes == replica::shapes::checksum(),
+        "{}: the results of tables of other shapes are not this machine's",
+        machine.name
+    );
     let instructions = |ticks: u32| machine.instructions(ticks).round() as u32;
     ensure!(
         instructions(thousand.wrapping_sub(*empty)).abs_diff(1000) <= 32,

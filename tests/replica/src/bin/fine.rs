@@ -1,34 +1,21 @@
 //! The fine controller counted over a dense grid: three ways to evaluate it, the same inputs.
 //!
-//! Words in `out`: the count of nothing and of 1,000 instructions; for a call of one instruction and for each way the
+//! Words in `out`: a checksum of tables of other shapes; the count of nothing and of 1,000 instructions; for a call of one instruction and for each way the
 //! least and the greatest count, a checksum of all outputs, and how deep the stack goes below its caller's caller.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-// The player's: it needs more of them.
-#[cfg(target_os = "none")]
-#[path = "../image/clock.rs"]
-#[allow(dead_code)]
-mod clock;
-#[cfg(target_os = "none")]
-#[path = "../image/files.rs"]
-#[allow(dead_code)]
-mod files;
-#[cfg(target_os = "none")]
-#[path = "../image/stack.rs"]
-#[allow(dead_code)]
-mod stack;
-
 #[cfg(target_os = "none")]
 mod image {
-    use crate::clock::{self, now, since};
-    use crate::files::Output;
-    use crate::stack::depth_of;
     use core::hint::black_box;
     use core::mem::MaybeUninit;
     use fuzzypilot::behaviour::fine::{FineController, FineMotion};
     use fuzzypilot::units::{Angle, Metres};
+    use replica::clock::{self, now, since};
+    use replica::files::Output;
     use replica::fine::{CONTROLLER, grid, mix};
     use replica::owned::Owned;
+    use replica::shapes;
+    use replica::stack::depth_of;
 
     static OUTPUT: Owned<Output> = Owned::new(Output::new());
 
@@ -39,6 +26,7 @@ mod image {
         if output.create().is_none() {
             semihosting::process::exit(1);
         }
+        output.word(shapes::checksum());
         clock::start();
         output.word(clock::empty());
         output.word(clock::thousand());

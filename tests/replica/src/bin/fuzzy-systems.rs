@@ -3,16 +3,11 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[path = "../image"]
 mod image {
-    #[allow(dead_code)]
-    mod clock;
-    #[allow(dead_code)]
-    mod files;
-
     use core::hint::black_box;
-    use files::Output;
     use fuzzypilot::fuzzy::system::{Controller, Evaluation};
+    use replica::clock;
+    use replica::files::Output;
     use replica::owned::Owned;
     use replica::systems::{
         CURVED, Curved, MAMDANI, Mamdani, NUMBERS, TABLE, Table, digest, inputs,

@@ -1,6 +1,6 @@
 //! The host's files, in blocks.
 
-use replica::tape::Source;
+use crate::tape::Source;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
@@ -15,6 +15,7 @@ pub struct Input {
 }
 
 impl Input {
+    /// Not opened.
     pub const fn new() -> Self {
         Self {
             file: None,
@@ -24,6 +25,7 @@ impl Input {
         }
     }
 
+    /// Opens the file `tape`; none if it cannot be read.
     pub fn open(&mut self) -> Option<()> {
         self.file = Some(File::open(c"tape").ok()?);
         Some(())
@@ -53,6 +55,7 @@ pub struct Output {
 }
 
 impl Output {
+    /// Not created.
     pub const fn new() -> Self {
         Self {
             file: None,
@@ -62,11 +65,13 @@ impl Output {
         }
     }
 
+    /// Creates the file `out`; none if it cannot be written.
     pub fn create(&mut self) -> Option<()> {
         self.file = Some(File::create(c"out").ok()?);
         Some(())
     }
 
+    /// Appends; what is lost is told by [`finish`](Self::finish).
     pub fn write(&mut self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
             let room = &mut self.block[self.filled..];
@@ -80,6 +85,7 @@ impl Output {
         }
     }
 
+    /// Appends a word, its lowest byte first.
     pub fn word(&mut self, word: u32) {
         self.write(&word.to_le_bytes());
     }

@@ -10,6 +10,7 @@ mod counter {
     const VALUE: *mut u32 = 0xE000_E018 as *mut u32;
     const SPAN: u32 = 0x00FF_FFFF;
 
+    /// Starts it.
     pub fn start() {
         // SAFETY: every machine emulated has a SysTick, and nothing else uses it.
         unsafe {
@@ -34,6 +35,7 @@ mod counter {
 
 #[cfg(target_arch = "riscv32")]
 mod counter {
+    /// It runs from reset on.
     pub fn start() {}
 
     #[inline(always)]
@@ -93,7 +95,14 @@ pub struct Clock {
     pub counts: [u32; STAGES],
 }
 
+impl Default for Clock {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Clock {
+    /// Before the first tick.
     pub fn new() -> Self {
         Self {
             last: 0,
@@ -101,6 +110,7 @@ impl Clock {
         }
     }
 
+    /// The tick begins now.
     #[inline(never)]
     pub fn begin(&mut self) {
         self.last = now();
