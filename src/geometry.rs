@@ -257,5 +257,7 @@ pub(crate) fn leg(c: Metres, a: Metres) -> Metres {
 
 /// Root of a sum of squares, rounded down to a step; saturates.
 pub(crate) fn root(square: u64) -> Metres {
-    Metres::from_bits(i32::try_from(square_root(square)).unwrap_or(i32::MAX))
+    let root = square_root(square).cast_signed();
+    // One with the sign's place taken is too long: then all ones but that.
+    Metres::from_bits((root | root >> 31) & i32::MAX)
 }

@@ -100,8 +100,14 @@ impl Obstacle {
     /// `grown`, stands on that ray.
     pub fn covers(&self, way: Rotation, grown: Metres) -> bool {
         let (along, beside) = way.along_and_beside(self.centre);
-        let reach = i64::from((self.radius + grown).bits()) << Rotation::FRACTION;
-        along > 0 && beside < reach && beside > reach.wrapping_neg()
+        // Rounded down it is below the reach if and only if it is.
+        let beside = (beside.unsigned_abs() >> Rotation::FRACTION) as u32;
+        along > 0
+            && beside
+                < (self.radius + grown)
+                    .max(Metres::ZERO)
+                    .bits()
+                    .unsigned_abs()
     }
 
     /// [`covers`](Self::covers) for the direction straight ahead.

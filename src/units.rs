@@ -12,7 +12,7 @@
 //! Linear quantities **saturate** at the ends of their range; angles **wrap**, on purpose and for free. No
 //! operation here can panic.
 
-use crate::integer::{arctangent, arctangent_of, saturate};
+use crate::integer::{arctangent, arctangent_of, magnitude, saturate};
 use core::ops::{Add, Neg, Sub};
 use fixed::types::{I2F30, I8F24, I16F16};
 
@@ -55,7 +55,7 @@ macro_rules! quantity {
 
             /// Magnitude; saturates.
             pub const fn abs(self) -> Self {
-                Self(self.0.saturating_abs())
+                Self::from_bits(magnitude(self.bits()))
             }
 
             /// Product with a plain number; rounds towards minus infinity, saturates.
@@ -224,7 +224,7 @@ impl Angle {
 
     /// Magnitude; half a turn becomes one step less.
     pub const fn abs(self) -> Self {
-        Self(self.0.saturating_abs())
+        Self(magnitude(self.0))
     }
 
     /// Whether the angle points to the left (half a turn does not).

@@ -81,6 +81,7 @@ impl OutputScale {
 
 /// `numerator / denominator`, below one, with 33 fractional bits, rounded down: bit by bit, a division of this width would be
 /// 2 KiB on a microcontroller. The denominator is below 2^63.
+#[inline(never)]
 const fn quotient(numerator: u64, denominator: u64) -> u64 {
     let (mut rest, mut quotient, mut bit) = (numerator, 0u64, 0);
     while bit < 33 {

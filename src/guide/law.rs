@@ -35,7 +35,8 @@ pub fn guide(
     let pose = predict(pose, last, latency);
     // From a standing start the whole reach may be used to find the path. Later the nearest place runs ahead of the
     // robot only where that is far inside a bend, and there it must not run through the path.
-    let driven = last.linear.abs().over(period);
+    let travelled = last.linear.over(period);
+    let driven = travelled.abs();
     let reach = if cursor.is_at_start() {
         follower.reach
     } else {
@@ -53,7 +54,7 @@ pub fn guide(
         Law::Guided => fix.foot.heading - approach(follower, fix.cross_track),
     };
     // The command covers one period of travel: the curvature at its middle stands for it.
-    let lead = Metres::from_bits(last.linear.over(period).bits() >> 1);
+    let lead = Metres::from_bits(travelled.bits() >> 1);
     Guidance {
         foot: fix.foot.at,
         cross_track: fix.cross_track,
