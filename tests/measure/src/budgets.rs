@@ -208,7 +208,7 @@ impl Budgets {
             table += "\n";
         }
         table += &format!(
-            "\nCounted in QEMU; the M4F image compiled for size, the M0 one for speed, by {}.\n",
+            "\nCounted in QEMU; compiled as the firmware is, by {}.\n",
             compiler()?
         );
         Ok(table)

@@ -15,8 +15,6 @@ pub struct Machine {
     pub key: &'static str,
     /// What its image is compiled for.
     pub target: &'static str,
-    /// In which of the images' profiles.
-    profile: &'static str,
     emulator: &'static str,
     board: &'static [&'static str],
     /// Rate of its clock, Hz; on RISC-V QEMU counts nanoseconds.
@@ -31,7 +29,6 @@ pub const MACHINES: [Machine; 3] = [
         name: "Cortex-M4F",
         key: "m4f",
         target: "thumbv7em-none-eabihf",
-        profile: "firmware",
         emulator: "qemu-system-arm",
         board: &["-machine", "netduinoplus2"],
         rate: 168e6,
@@ -41,7 +38,6 @@ pub const MACHINES: [Machine; 3] = [
         name: "Cortex-M0",
         key: "m0",
         target: "thumbv6m-none-eabi",
-        profile: "firmware-fast",
         emulator: "qemu-system-arm",
         board: &["-machine", "microbit"],
         rate: 16e6,
@@ -51,13 +47,15 @@ pub const MACHINES: [Machine; 3] = [
         name: "RISC-V",
         key: "rv32",
         target: "riscv32imc-unknown-none-elf",
-        profile: "firmware-fast",
         emulator: "qemu-system-riscv32",
         board: &["-machine", "sifive_e", "-bios", "none"],
         rate: 1e9,
         budgeted: false,
     },
 ];
+
+/// What every image is compiled with.
+const PROFILE: &str = "firmware";
 
 /// How the emulator keeps time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -214,7 +212,7 @@ pub struct Images {
 }
 
 impl Images {
-    /// Builds them for every machine, in its firmware's profile and without the flags that the firmware links with.
+    /// Builds them for every machine as the firmware is built.
     pub fn build() -> anyhow::Result<Self> {
         // Beside this program: `target/release/…` leads to `target/replica`.
         let here = std::env::current_exe()?;
@@ -257,9 +255,11 @@ impl Images {
         let mut command = Command::new(cargo);
         command
             .current_dir(repository("."))
-            .env("CARGO_ENCODED_RUSTFLAGS", "")
+            // Those of `.cargo/config.toml` only.
+            .env_remove("RUSTFLAGS")
+            .env_remove("CARGO_ENCODED_RUSTFLAGS")
             .args(["build", "--quiet", "--package", "replica"])
-            .args(["--profile", machine.profile, "--target", machine.target])
+            .args(["--profile", PROFILE, "--target", machine.target])
             .arg("--target-dir")
             .arg(&self.folder);
         command
@@ -267,7 +267,7 @@ impl Images {
 
     /// The file of an image.
     pub fn of(&self, machine: &Machine, name: &str) -> PathBuf {
-        let built = self.folder.join(machine.target).join(machine.profile);
+        let built = self.folder.join(machine.target).join(PROFILE);
         built.join(name)
     }
 }

@@ -124,7 +124,7 @@ impl Bars {
             table += "\n";
         }
         table += &format!(
-            "\nCounted in QEMU, the same for every input; the M4F image compiled for size, the others for speed, by {}.\n",
+            "\nCounted in QEMU, the same for every input; compiled as the firmware is, by {}.\n",
             compiler()?
         );
         Ok(table)
