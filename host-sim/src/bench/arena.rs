@@ -55,6 +55,8 @@ pub struct Arena {
     pub goal: [f64; 2],
     /// How near counts as there, m.
     pub goal_radius: f64,
+    /// Whether there is no way to the goal, and a robot ought to say so.
+    pub sealed: bool,
     /// The planner's path from start to goal, both included, m.
     pub route: Vec<[f64; 2]>,
 }

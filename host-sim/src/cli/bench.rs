@@ -7,6 +7,7 @@ use super::{BadInput, print, put, whole};
 use clap::Args;
 use conditions::{Task, Trouble};
 use host_sim::bench::attempt::Setting;
+use host_sim::bench::body::JACKAL;
 use host_sim::bench::campaign::Campaign;
 use host_sim::bench::controllers::{self, Controller};
 use host_sim::bench::results::{Conditions, Results};
@@ -18,10 +19,12 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct BenchArguments {
-    /// Where the worlds are: BARN's as JSON lines (.jsonl, .jsonl.gz, with common.json beside it).
+    /// Where the worlds are: BARN's as a folder (world_N.world, path_files/path_N.npy) or as JSON lines (.jsonl, .jsonl.gz,
+    /// with common.json beside it), one of your own (.toml), or generated:KIND with KIND one of barn, corridor, rooms,
+    /// slalom, forest, moving, u-trap, sealed, and options such as generated:barn,fill=0.2,smooth=3,radius=0.36.
     #[arg(long, value_name = "PLACE")]
     worlds: String,
-    /// Which worlds: all, dev (not divisible by 6), test (the others), or a list such as 1,7,10-19,0-294/6.
+    /// Which worlds (of generated ones there are 100 unless a list says more): all, dev (not divisible by 6), test (the others), or a list such as 1,7,10-19,0-294/6.
     #[arg(long, default_value = "all", value_name = "LIST")]
     numbers: String,
     /// What the robot is given.
@@ -99,8 +102,7 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
 
 /// The worlds that were asked for, with what the path does not know.
 fn arenas(arguments: &BenchArguments, numbers: &Numbers) -> anyhow::Result<Vec<Arena>> {
-    let mut arenas = worlds::load(&arguments.worlds)?;
-    arenas.retain(|a| numbers.holds(a.number));
+    let mut arenas = worlds::load(&arguments.worlds, numbers, &JACKAL)?;
     if arenas.is_empty() {
         return Err(BadInput(format!(
             "--numbers {}: no such world in {}; allowed are numbers that are there",
@@ -124,6 +126,7 @@ fn arenas(arguments: &BenchArguments, numbers: &Numbers) -> anyhow::Result<Vec<A
         }
         (None, _) => {}
     }
+    worlds::check::check(&arguments.worlds, &arenas, &JACKAL)?;
     Ok(arenas)
 }
 

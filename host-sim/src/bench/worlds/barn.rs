@@ -91,6 +91,7 @@ impl Common {
             start: self.start,
             goal: self.goal,
             goal_radius: self.goal_radius,
+            sealed: false,
             route,
         }
     }

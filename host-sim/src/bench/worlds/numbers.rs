@@ -5,6 +5,9 @@ pub const fn is_test(number: u32) -> bool {
     number.is_multiple_of(6)
 }
 
+/// Numbers are below this.
+const MOST: u32 = 1_000_000;
+
 /// A choice of world numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Numbers {
@@ -37,6 +40,22 @@ impl Numbers {
             })
     }
 
+    /// The numbers, where there is no list of worlds: all are those below `usual`.
+    pub fn below(&self, usual: u32) -> Vec<u32> {
+        match self {
+            Self::Ranges(ranges) => {
+                let mut numbers: Vec<u32> = ranges
+                    .iter()
+                    .flat_map(|&(first, last, step)| (first..=last).step_by(step as usize))
+                    .collect();
+                numbers.sort_unstable();
+                numbers.dedup();
+                numbers
+            }
+            _ => (0..usual).filter(|n| self.holds(*n)).collect(),
+        }
+    }
+
     /// Whether it holds a number.
     pub fn holds(&self, number: u32) -> bool {
         match self {
@@ -62,5 +81,5 @@ fn range(text: &str) -> Option<(u32, u32, u32)> {
             (number, number)
         }
     };
-    (first <= last && step > 0).then_some((first, last, step))
+    (first <= last && last < MOST && step > 0).then_some((first, last, step))
 }
