@@ -7,6 +7,7 @@ mod eval;
 mod fuzzy;
 mod hil;
 mod list;
+mod merge;
 mod run;
 mod surface;
 mod sweep;
@@ -63,6 +64,8 @@ enum Command {
     BenchTick(bench_tick::BenchArguments),
     /// Drive navigators through many worlds with many seeds on all cores, and print how often they arrive.
     Bench(Box<bench::BenchArguments>),
+    /// Put the parts of a bench that was run with `--shard` together.
+    Merge(merge::MergeArguments),
 }
 
 /// Carries out a command line.
@@ -79,6 +82,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
         Some(Command::Fuzzy(arguments)) => fuzzy::execute(&arguments),
         Some(Command::BenchTick(arguments)) => bench_tick::execute(&arguments),
         Some(Command::Bench(arguments)) => bench::execute(&arguments),
+        Some(Command::Merge(arguments)) => merge::execute(&arguments),
     }
 }
 
@@ -182,10 +186,15 @@ pub fn print(text: impl Display) -> anyhow::Result<()> {
 
 /// Refuses a folder that is a file, or lies under one.
 pub fn check_folder(folder: &Path) -> Result<(), BadInput> {
+    check_folder_of("--out", folder)
+}
+
+/// The same for another option.
+pub fn check_folder_of(option: &str, folder: &Path) -> Result<(), BadInput> {
     let above = folder.ancestors().find(|p| p.symlink_metadata().is_ok());
     match above {
         Some(file) if !file.is_dir() => Err(BadInput(format!(
-            "--out {}: {} is a file; allowed is a folder, existing or new",
+            "{option} {}: {} is a file; allowed is a folder, existing or new",
             folder.display(),
             file.display()
         ))),

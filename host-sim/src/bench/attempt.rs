@@ -1,7 +1,7 @@
 //! One run: a navigator, a world, a seed.
 
 use super::arena::{Arena, Circle};
-use super::body::{JACKAL, Rectangle};
+use super::body::{BodyFrame, JACKAL, Rectangle};
 use super::discs::Discs;
 use super::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use super::odometry::{Drift, Odometry};
@@ -285,10 +285,9 @@ fn move_along(arena: &Arena, time: f64, circles: &mut [Circle]) {
 
 /// Distance of a body from the nearest circle, at most [`CLEARANCE_REACH`]; at or below zero is contact.
 pub fn body_clearance(body: &Rectangle, pose: [f64; 3], circles: &[Circle]) -> f64 {
-    let (sin, cos) = libm::sincos(pose[2]);
+    let frame = BodyFrame::new(pose);
     circles.iter().fold(CLEARANCE_REACH, |least, c| {
-        let (dx, dy) = (c.at[0] - pose[0], c.at[1] - pose[1]);
-        let p = [dx * cos + dy * sin, dy * cos - dx * sin];
+        let p = frame.see(c.at);
         // Most circles are further away than what was found already: no root for them.
         let far = least + c.radius;
         if far > 0.0 && body.distance_squared(p) >= far * far {

@@ -53,9 +53,33 @@ impl Rectangle {
     }
 }
 
+/// The frame of a body, for many points.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyFrame {
+    at: [f64; 2],
+    cos: f64,
+    sin: f64,
+}
+
+impl BodyFrame {
+    /// Of a body at x, y (m), heading (rad).
+    pub fn new([x, y, heading]: [f64; 3]) -> Self {
+        let (sin, cos) = libm::sincos(heading);
+        Self {
+            at: [x, y],
+            cos,
+            sin,
+        }
+    }
+
+    /// A point of the world as the body has it.
+    pub fn see(&self, point: [f64; 2]) -> [f64; 2] {
+        let (dx, dy) = (point[0] - self.at[0], point[1] - self.at[1]);
+        [dx * self.cos + dy * self.sin, dy * self.cos - dx * self.sin]
+    }
+}
+
 /// A point of the world in the frame of a body at `pose`.
-pub fn to_body([x, y, heading]: [f64; 3], point: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = libm::sincos(heading);
-    let (dx, dy) = (point[0] - x, point[1] - y);
-    [dx * cos + dy * sin, dy * cos - dx * sin]
+pub fn to_body(pose: [f64; 3], point: [f64; 2]) -> [f64; 2] {
+    BodyFrame::new(pose).see(point)
 }

@@ -2,7 +2,7 @@
 //! goes wrong with both.
 
 use super::arena::Circle;
-use super::body::to_body;
+use super::body::BodyFrame;
 use super::seeds::normal;
 use crate::recording::BeamView;
 use crate::si;
@@ -110,13 +110,10 @@ impl Ranging {
     /// Looks from `pose` at circles that stand in the world's frame, and fills [`Ranging::readings`].
     pub fn look(&mut self, pose: [f64; 3], circles: &[Circle], rng: &mut Pcg64Mcg) {
         self.scratch.clear();
-        let (sin, cos) = libm::sincos(pose[2]);
-        self.scratch.extend(circles.iter().map(|c| {
-            let (dx, dy) = (c.at[0] - pose[0], c.at[1] - pose[1]);
-            Circle {
-                at: [dx * cos + dy * sin, dy * cos - dx * sin],
-                radius: c.radius,
-            }
+        let frame = BodyFrame::new(pose);
+        self.scratch.extend(circles.iter().map(|c| Circle {
+            at: frame.see(c.at),
+            radius: c.radius,
         }));
         match self.fan {
             Some(fan) => self.sweep(fan),
@@ -135,10 +132,10 @@ impl Ranging {
         let Some(first) = self.sensors.first() else {
             return;
         };
-        let mount = [first.view.x, first.view.y, 0.0];
+        let mount = BodyFrame::new([first.view.x, first.view.y, 0.0]);
         let last = self.sensors.len() as f64 - 1.0;
         for circle in &self.scratch {
-            let [x, y] = to_body(mount, circle.at);
+            let [x, y] = mount.see(circle.at);
             let distance = libm::hypot(x, y);
             let (middle, half) = if distance > circle.radius {
                 (libm::atan2(y, x), libm::asin(circle.radius / distance))

@@ -18,6 +18,9 @@ pub struct Conditions {
     pub worlds: String,
     /// Which of them.
     pub numbers: String,
+    /// Where the cylinders come from that the path knows nothing of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unmapped: Option<String>,
     /// Speed cap, m/s.
     pub speed: f64,
     /// First seed.
@@ -130,7 +133,7 @@ impl Figures {
             timeout: share(Ending::Timeout),
             blocked: share(Ending::Blocked),
             score: mean(|o| o.score),
-            mean_time_s: reached.iter().sum::<f64>() / reached.len().max(1) as f64,
+            mean_time_s: reached.iter().fold(0.0, |sum, t| sum + t) / reached.len().max(1) as f64,
             median_min_clearance_m: median(&mut clearances),
             cross_track_rms_m: mean(|o| o.cross_track_rms_m * o.cross_track_rms_m).sqrt(),
             omega_rate_rms: mean(|o| o.omega_rate_rms * o.omega_rate_rms).sqrt(),

@@ -15,6 +15,8 @@ pub enum Purpose {
     World = 3,
     /// Resampling for confidence intervals.
     Bootstrap = 4,
+    /// Cylinders that a path knows nothing of.
+    Unmapped = 5,
 }
 
 /// The stream of a seed in a world for a purpose.

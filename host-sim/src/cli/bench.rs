@@ -1,9 +1,10 @@
 //! `host-sim bench`
 
 mod conditions;
-mod table;
+mod report;
+pub mod table;
 
-use super::{BadInput, print, put, whole};
+use super::{BadInput, check_folder_of, print, put, whole};
 use clap::Args;
 use conditions::{Task, Trouble};
 use host_sim::bench::attempt::Setting;
@@ -11,6 +12,7 @@ use host_sim::bench::body::JACKAL;
 use host_sim::bench::campaign::Campaign;
 use host_sim::bench::controllers::{self, Controller};
 use host_sim::bench::results::{Conditions, Results};
+use host_sim::bench::shard::Shard;
 use host_sim::bench::worlds::{self, numbers::Numbers, unmapped};
 use host_sim::bench::{arena::Arena, sensors};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -30,7 +32,8 @@ pub struct BenchArguments {
     /// What the robot is given.
     #[arg(long, value_enum, default_value_t = Task::Path)]
     task: Task,
-    /// Cylinders that the path knows nothing of, world,x,y,r a line; for `--task unmapped`.
+    /// Cylinders that the path knows nothing of, world,x,y,r a line; or `generated`: three on every path that leave a way
+    /// for a disc of 0.3 m. For `--task unmapped`.
     #[arg(long, value_name = "FILE")]
     unmapped: Option<PathBuf>,
     /// cone16, cone8, ultrasonic5, lidar720, or cones:COUNT:FIELD:WIDTH in degrees.
@@ -56,6 +59,15 @@ pub struct BenchArguments {
     /// Also write all results to this file.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Also write a page with a picture of every failed run that opens its replay, and the worlds' figures.
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Most replays of a controller in the report.
+    #[arg(long, default_value_t = 500, value_parser = whole(0, 1_000_000), allow_hyphen_values = true)]
+    most_replays: u64,
+    /// Only this part of the worlds: i/n with i from 0 to n-1. `host-sim merge` puts the parts together.
+    #[arg(long, value_name = "I/N")]
+    shard: Option<String>,
 }
 
 pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
@@ -66,7 +78,18 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         .map_err(|e| named("--sensors", &arguments.sensors, e))?;
     let numbers = Numbers::parse(&arguments.numbers)
         .map_err(|e| named("--numbers", &arguments.numbers, e))?;
+    let shard = match &arguments.shard {
+        None => None,
+        Some(text) => Some(Shard::parse(text).map_err(|e| named("--shard", text, e))?),
+    };
+    if let Some(folder) = &arguments.report {
+        check_folder_of("--report", folder)?;
+    }
     let arenas = arenas(arguments, &numbers)?;
+    let arenas = match shard {
+        Some(shard) => shard.of(arenas),
+        None => arenas,
+    };
 
     let mut setting = Setting::new(sensors, arguments.speed, arguments.task.planned());
     arguments.trouble.apply(&mut setting)?;
@@ -79,7 +102,7 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         .num_threads(arguments.threads.unwrap_or(0) as usize)
         .build()?;
     let begin = std::time::Instant::now();
-    let results = pool.install(|| run(arguments, &campaign, &chosen));
+    let results = pool.install(|| run(arguments, &campaign, &chosen, shard));
     let simulated: f64 = results
         .iter()
         .flat_map(|r| &r.per_world)
@@ -89,15 +112,24 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
     let spent = begin.elapsed().as_secs_f64() * pool.current_num_threads() as f64;
 
     if let Some(file) = &arguments.json {
-        let mut text = serde_json::to_string_pretty(&results)?;
-        text.push('\n');
-        put(file, text.as_bytes())?;
+        put(file, json(&results)?.as_bytes())?;
+    }
+    if let Some(folder) = &arguments.report {
+        let most = arguments.most_replays as usize;
+        report::write(folder, &campaign, &chosen, &results, most)?;
     }
     print(format_args!("{}\n", table::of(&results)))?;
     print(format_args!(
         "{simulated:.0} s driven, {:.0} × real time a thread\n",
         simulated / spent
     ))
+}
+
+/// Results as the JSON file has them.
+pub fn json(results: &[Results]) -> anyhow::Result<String> {
+    let mut text = serde_json::to_string_pretty(results)?;
+    text.push('\n');
+    Ok(text)
 }
 
 /// The worlds that were asked for, with what the path does not know.
@@ -111,10 +143,13 @@ fn arenas(arguments: &BenchArguments, numbers: &Numbers) -> anyhow::Result<Vec<A
         .into());
     }
     match (&arguments.unmapped, arguments.task) {
+        (Some(file), Task::Unmapped) if file.as_os_str() == "generated" => {
+            unmapped::place(&mut arenas);
+        }
         (Some(file), Task::Unmapped) => unmapped::add(file, &mut arenas)?,
         (None, Task::Unmapped) => {
             return Err(BadInput(
-                "--task unmapped: no cylinders; allowed with --unmapped FILE.csv".to_owned(),
+                "--task unmapped: no cylinders; allowed with --unmapped FILE.csv, or --unmapped generated".to_owned(),
             )
             .into());
         }
@@ -130,25 +165,32 @@ fn arenas(arguments: &BenchArguments, numbers: &Numbers) -> anyhow::Result<Vec<A
     Ok(arenas)
 }
 
-fn run(arguments: &BenchArguments, campaign: &Campaign, chosen: &[Controller]) -> Vec<Results> {
+fn run(
+    arguments: &BenchArguments,
+    campaign: &Campaign,
+    chosen: &[Controller],
+    shard: Option<Shard>,
+) -> Vec<Results> {
     let bar = bar((campaign.arenas.len() * campaign.seeds.len() * chosen.len()) as u64);
     let results = chosen
         .iter()
         .map(|controller| {
             bar.set_message(controller.name);
             let runs = campaign.run(controller, &|| bar.inc(1));
+            let unmapped = arguments.unmapped.as_ref();
             let conditions = Conditions {
                 controller: controller.name.to_owned(),
                 task: arguments.task.name().to_owned(),
                 sensors: arguments.sensors.clone(),
                 worlds: arguments.worlds.clone(),
                 numbers: arguments.numbers.clone(),
+                unmapped: unmapped.map(|file| file.display().to_string()),
                 speed: arguments.speed,
                 first_seed: arguments.first_seed,
                 seeds: arguments.seeds,
                 disturbance: arguments.trouble.words(),
             };
-            Results::of(conditions, None, &runs)
+            Results::of(conditions, shard.map(|s| [s.index, s.count]), &runs)
         })
         .collect();
     bar.finish_and_clear();

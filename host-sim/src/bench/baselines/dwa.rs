@@ -7,7 +7,7 @@
 
 use super::echoes::Memory;
 use super::route::{Route, distance};
-use crate::bench::body::to_body;
+use crate::bench::body::BodyFrame;
 use crate::bench::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use crate::bench::vehicle::along;
 use crate::world::wrap;
@@ -59,7 +59,8 @@ pub struct Dwa {
     route: Route,
     parameters: Parameters,
     memory: Memory,
-    points: Vec<[f64; 2]>,
+    /// Points in the body's frame, with their distance from the body.
+    points: Vec<([f64; 2], f64)>,
 }
 
 impl Dwa {
@@ -86,11 +87,11 @@ impl Dwa {
         let dt = STEP / rate;
         let steps = (p.look / STEP) as usize;
         for k in 1..=steps {
-            let pose = along([0.0; 3], [v, w], k as f64 * dt);
-            let hit = self.points.iter().any(|q| {
-                let clearance = body.distance(to_body(pose, *q));
+            let frame = BodyFrame::new(along([0.0; 3], [v, w], k as f64 * dt));
+            let hit = self.points.iter().any(|(q, now)| {
+                let p2 = frame.see(*q);
                 // What is too near already may be left behind.
-                clearance < p.margin && clearance < body.distance(*q) - 1e-6
+                body.distance_squared(p2) < p.margin * p.margin && body.distance(p2) < now - 1e-6
             });
             if hit {
                 return (k - 1) as f64 * STEP;
@@ -111,13 +112,15 @@ impl Navigator for Dwa {
         }
         self.memory.observe(&self.mission.sensors, inputs);
         let reach = p.look + self.mission.body.outer_radius() + p.margin;
+        let (frame, body) = (BodyFrame::new(inputs.pose), self.mission.body);
         self.points.clear();
         self.points.extend(
             self.memory
                 .points
                 .iter()
-                .map(|seen| to_body(inputs.pose, seen.at))
-                .filter(|[u, v]| u * u + v * v < reach * reach),
+                .map(|seen| frame.see(seen.at))
+                .filter(|[u, v]| u * u + v * v < reach * reach)
+                .map(|point| (point, body.distance(point))),
         );
         let carrot = if self.mission.planned {
             let at = self.route.locate([x, y]);

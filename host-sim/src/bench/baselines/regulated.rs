@@ -8,7 +8,7 @@ use super::echoes::echoes;
 use super::pure_pursuit::curvature_to;
 use super::route::{Route, distance};
 use super::steer::stopping_speed;
-use crate::bench::body::to_body;
+use crate::bench::body::{BodyFrame, to_body};
 use crate::bench::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use crate::bench::vehicle::along;
 
@@ -71,10 +71,10 @@ impl Regulated {
         const STEP: f64 = 0.1;
         let steps = (self.parameters.foresight / STEP).ceil() as usize;
         (1..=steps).any(|k| {
-            let pose = along([0.0; 3], twist, k as f64 * STEP);
+            let frame = BodyFrame::new(along([0.0; 3], twist, k as f64 * STEP));
             points
                 .iter()
-                .any(|p| self.mission.body.distance(to_body(pose, *p)) <= 0.0)
+                .any(|p| self.mission.body.distance(frame.see(*p)) <= 0.0)
         })
     }
 }

@@ -43,14 +43,14 @@ pub struct Parameters {
 impl Default for Parameters {
     fn default() -> Self {
         Self {
-            radius: 0.3,
-            window: 1.6,
-            low: 0.1,
-            high: 0.2,
-            costs: [5.0, 2.0, 2.0],
-            carrot: 0.8,
-            slow_distance: 0.8,
-            least_speed: 0.15,
+            radius: 0.223,
+            window: 0.84,
+            low: 0.232,
+            high: 0.237,
+            costs: [5.0, 2.06, 0.99],
+            carrot: 1.54,
+            slow_distance: 0.51,
+            least_speed: 0.385,
         }
     }
 }

@@ -1,8 +1,32 @@
-//! Cylinders that the planner's path knows nothing of: a CSV file with `world,x,y,r` a line, metres.
+//! Cylinders that the planner's path knows nothing of: from a CSV file with `world,x,y,r` a line, metres, or placed on
+//! the path.
 
 use super::error::WorldError;
+use super::planner;
 use crate::bench::arena::{Arena, Circle};
+use crate::bench::baselines::route::{Route, distance};
+use crate::bench::seeds::{Purpose, normal, stream};
+use rand::RngExt;
+use rayon::prelude::*;
 use std::path::Path;
+
+/// Cylinders that are placed on a path.
+const PLACED: usize = 3;
+
+/// Their radius, m: the benchmark's.
+const RADIUS: f64 = 0.075;
+
+/// Radius of the disc for which they leave a way, m.
+const WAY: f64 = 0.3;
+
+/// Standard deviation of their distance from the path, m.
+const BESIDE: f64 = 0.1;
+
+/// How far they stay from start and goal, m: there the robot could not but touch them, or need not pass them.
+const FREE: f64 = 1.2;
+
+/// Throws before a world is left with fewer.
+const THROWS: usize = 200;
 
 /// Adds the file's cylinders to their worlds. Lines of worlds that are not there are no error: a file serves any choice
 /// of worlds.
@@ -50,6 +74,38 @@ pub fn add(file: &Path, arenas: &mut [Arena]) -> Result<(), WorldError> {
             "world,x,y,r a line",
         ))
     }
+}
+
+/// Places three cylinders on every path, the same ones for the same world. Each is thrown anew until a disc of 0.3 m still
+/// has a way from start to goal; a world without room for three gets fewer.
+pub fn place(arenas: &mut [Arena]) {
+    arenas.par_iter_mut().for_each(|arena| {
+        let mut rng = stream(0, arena.number, Purpose::Unmapped);
+        let route = Route::new(&arena.route);
+        let start = [arena.start[0], arena.start[1]];
+        let mut placed = 0;
+        for _ in 0..THROWS {
+            let along = route.length() * rng.random::<f64>();
+            let on = route.point(along);
+            let at = [
+                on[0] + BESIDE * normal(&mut rng),
+                on[1] + BESIDE * normal(&mut rng),
+            ];
+            if distance(at, start) < FREE || distance(at, arena.goal) < FREE + arena.goal_radius {
+                continue;
+            }
+            arena.circles.push(Circle { at, radius: RADIUS });
+            let way = planner::route(&arena.circles, WAY, start, arena.goal, arena.goal_radius);
+            if way.is_none() {
+                arena.circles.pop();
+                continue;
+            }
+            placed += 1;
+            if placed == PLACED {
+                break;
+            }
+        }
+    });
 }
 
 fn cylinder(fields: &[&str]) -> Option<(u32, Circle)> {
