@@ -35,14 +35,14 @@ pub struct Parameters {
 impl Default for Parameters {
     fn default() -> Self {
         Self {
-            lookahead: 1.0,
-            onward: 0.8,
+            lookahead: 1.52,
+            onward: 0.2,
             margin: 0.3,
-            keep: 10.0,
+            keep: 1.0,
             thickness: 0.0,
             change: 1.309,
-            ratio: 1.5,
-            carrot: 0.8,
+            ratio: 1.69,
+            carrot: 0.67,
         }
     }
 }

@@ -36,14 +36,14 @@ pub struct Parameters {
 impl Default for Parameters {
     fn default() -> Self {
         Self {
-            lookahead_time: 0.6,
-            lookahead_min: 0.4,
-            lookahead_max: 0.9,
-            bend_radius: 0.9,
-            proximity: 0.3,
-            proximity_gain: 1.0,
-            least_speed: 0.25,
-            foresight: 0.3,
+            lookahead_time: 1.32,
+            lookahead_min: 0.33,
+            lookahead_max: 0.62,
+            bend_radius: 1.21,
+            proximity: 0.05,
+            proximity_gain: 1.5,
+            least_speed: 0.5,
+            foresight: 0.1,
         }
     }
 }
