@@ -13,12 +13,23 @@ fn sim(dir: &Path) -> Command {
     command
 }
 
-/// A short campaign.
+/// A short campaign of two controllers.
 fn bench(dir: &Path, more: &[&str]) -> Command {
+    bench_of(dir, "pure-pursuit,vfh", more)
+}
+
+fn bench_of(dir: &Path, controllers: &str, more: &[&str]) -> Command {
     let mut command = sim(dir);
     command
         .args(["bench", "--worlds", "generated:forest", "--numbers", "0-6"])
-        .args(["--task", "goal", "--controllers", "pure-pursuit,vfh", "--seeds", "2"])
+        .args([
+            "--task",
+            "goal",
+            "--controllers",
+            controllers,
+            "--seeds",
+            "2",
+        ])
         .args(["--time-limit", "20"])
         .args(more);
     command
@@ -27,13 +38,24 @@ fn bench(dir: &Path, more: &[&str]) -> Command {
 #[test]
 fn parts_merge_into_what_one_run_writes() {
     let dir = tempdir().unwrap();
-    bench(dir.path(), &["--json", "whole.json", "--threads", "1"]).assert().success();
+    bench(dir.path(), &["--json", "whole.json", "--threads", "1"])
+        .assert()
+        .success();
     for shard in ["0/3", "1/3", "2/3"] {
         let name = format!("part{}.json", &shard[..1]);
-        bench(dir.path(), &["--json", &name, "--shard", shard]).assert().success();
+        bench(dir.path(), &["--json", &name, "--shard", shard])
+            .assert()
+            .success();
     }
     sim(dir.path())
-        .args(["merge", "part2.json", "part0.json", "part1.json", "--json", "merged.json"])
+        .args([
+            "merge",
+            "part2.json",
+            "part0.json",
+            "part1.json",
+            "--json",
+            "merged.json",
+        ])
         .assert()
         .success()
         .stdout(predicate::str::contains("vfh"));
@@ -56,8 +78,15 @@ fn parts_merge_into_what_one_run_writes() {
 #[test]
 fn parts_that_do_not_belong_together_are_refused() {
     let dir = tempdir().unwrap();
-    bench(dir.path(), &["--json", "a.json", "--shard", "0/2"]).assert().success();
-    bench(dir.path(), &["--json", "b.json", "--shard", "1/2", "--speed", "0.5"]).assert().success();
+    bench(dir.path(), &["--json", "a.json", "--shard", "0/2"])
+        .assert()
+        .success();
+    bench(
+        dir.path(),
+        &["--json", "b.json", "--shard", "1/2", "--speed", "0.5"],
+    )
+    .assert()
+    .success();
     bench(dir.path(), &["--json", "c.json"]).assert().success();
     fs::write(dir.path().join("d.json"), "[{\"controller\": \"vfh\"").unwrap();
     let cases: [(&[&str], &str); 5] = [
@@ -82,9 +111,13 @@ fn parts_that_do_not_belong_together_are_refused() {
 #[test]
 fn a_report_has_a_picture_and_a_replay_for_every_failed_run() {
     let dir = tempdir().unwrap();
-    bench(dir.path(), &["--controllers", "pure-pursuit", "--json", "r.json", "--report", "report"])
-        .assert()
-        .success();
+    bench_of(
+        dir.path(),
+        "pure-pursuit",
+        &["--json", "r.json", "--report", "report"],
+    )
+    .assert()
+    .success();
     let read = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
     let results: Value = serde_json::from_str(&read("r.json")).unwrap();
     let failed = results[0]["per_world"]
@@ -99,7 +132,10 @@ fn a_report_has_a_picture_and_a_replay_for_every_failed_run() {
     assert_eq!(page.matches("<svg").count(), failed);
     for link in page.split("href=\"").skip(1) {
         let file = link.split('"').next().unwrap();
-        assert!(read(&format!("report/{file}")).contains("</html>"), "{file}");
+        assert!(
+            read(&format!("report/{file}")).contains("</html>"),
+            "{file}"
+        );
     }
     assert_eq!(read("report/per-world.csv").lines().count(), 8);
     assert!(read("report/table.txt").contains("pure-pursuit"));
@@ -121,7 +157,10 @@ fn wrong_input_ends_with_2_and_one_message() {
     };
     world(
         "closed.toml",
-        &format!("start = [0, 0, 0]\ngoal = [5, 0]\ncircle = [{}]\n", ring(1.5)),
+        &format!(
+            "start = [0, 0, 0]\ngoal = [5, 0]\ncircle = [{}]\n",
+            ring(1.5)
+        ),
     );
     world(
         "goal.toml",
@@ -132,27 +171,60 @@ fn wrong_input_ends_with_2_and_one_message() {
         "start = [0, 0, 0]\ngoal = [5, 0]\ncircle = [{ at = [0.3, 0.0], radius = 0.1 }]\n",
     );
     world("field.toml", "start = [0, 0, 0]\n\ngaol = [5, 0]\n");
-    world("radius.toml", "start = [0, 0, 0]\ngoal = [5, 0]\ncircle = [\n  { at = [3, 0], radius = -1 },\n]\n");
-    world("false.toml", "start = [0, 0, 0]\ngoal = [5, 0]\nsealed = true\n");
+    world(
+        "radius.toml",
+        "start = [0, 0, 0]\ngoal = [5, 0]\ncircle = [\n  { at = [3, 0], radius = -1 },\n]\n",
+    );
+    world(
+        "false.toml",
+        "start = [0, 0, 0]\ngoal = [5, 0]\nsealed = true\n",
+    );
     world("extra.csv", "1,0.0,zero,0.1\n");
     let cases: [(&[&str], &str); 17] = [
         (&["--worlds", "closed.toml"], "world 0: no route from"),
-        (&["--worlds", "goal.toml"], "the goal (5, 0) is inside the obstacle"),
-        (&["--worlds", "start.toml"], "the robot touches an obstacle where it starts"),
-        (&["--worlds", "field.toml"], "field.toml:3: found unknown field `gaol`"),
-        (&["--worlds", "radius.toml"], "radius.toml:4: found -1; allowed: a radius above 0"),
-        (&["--worlds", "false.toml"], "it is called sealed and has a route"),
+        (
+            &["--worlds", "goal.toml"],
+            "the goal (5, 0) is inside the obstacle",
+        ),
+        (
+            &["--worlds", "start.toml"],
+            "the robot touches an obstacle where it starts",
+        ),
+        (
+            &["--worlds", "field.toml"],
+            "field.toml:3: found unknown field `gaol`",
+        ),
+        (
+            &["--worlds", "radius.toml"],
+            "radius.toml:4: found -1; allowed: a radius above 0",
+        ),
+        (
+            &["--worlds", "false.toml"],
+            "it is called sealed and has a route",
+        ),
         (&["--worlds", "none.jsonl"], "cannot be read"),
-        (&["--worlds", "generated:sea"], "the kind `sea`; allowed: barn, corridor"),
-        (&["--worlds", "generated:barn,fill=2"], "found `fill=2`; allowed: radius"),
-        (&["--numbers", "5-1"], "--numbers 5-1: allowed are all, dev, test"),
+        (
+            &["--worlds", "generated:sea"],
+            "the kind `sea`; allowed: barn, corridor",
+        ),
+        (
+            &["--worlds", "generated:barn,fill=2"],
+            "found `fill=2`; allowed: radius",
+        ),
+        (
+            &["--numbers", "5-1"],
+            "--numbers 5-1: allowed are all, dev, test",
+        ),
         (&["--sensors", "cone7"], "unknown sensors `cone7`"),
         (&["--controllers", "vhf"], "unknown controller `vhf`"),
         (&["--shard", "3/3"], "--shard 3/3: allowed is i/n"),
         (&["--dead", "16"], "--dead 16: no such sensor"),
         (&["--drift", "2"], "--drift 2: allowed are two numbers"),
         (&["--task", "unmapped"], "--task unmapped: no cylinders"),
-        (&["--task", "unmapped", "--unmapped", "extra.csv"], "extra.csv:1: found `1,0.0,zero,0.1`"),
+        (
+            &["--task", "unmapped", "--unmapped", "extra.csv"],
+            "extra.csv:1: found `1,0.0,zero,0.1`",
+        ),
     ];
     for (arguments, part) in cases {
         let worlds: &[&str] = if arguments.contains(&"--worlds") {
@@ -187,7 +259,15 @@ fn one_s_own_world_is_driven_and_a_sealed_one_is_no_error() {
     fs::write(dir.path().join("own.toml"), text).unwrap();
     for (place, share) in [("own.toml", "100.0"), ("generated:sealed", "0.0")] {
         sim(dir.path())
-            .args(["bench", "--worlds", place, "--numbers", "0", "--task", "goal"])
+            .args([
+                "bench",
+                "--worlds",
+                place,
+                "--numbers",
+                "0",
+                "--task",
+                "goal",
+            ])
             .args(["--controllers", "bendy", "--time-limit", "15"])
             .assert()
             .success()

@@ -28,9 +28,9 @@ fn from_rectangle([x, y, heading]: [f64; 3], p: [f64; 2]) -> f64 {
         corner(0.254, -0.215),
     ];
     let edges = (0..4).map(|k| (corners[k], corners[(k + 1) % 4]));
-    let inside = edges.clone().all(|(a, b)| {
-        (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
-    });
+    let inside = edges
+        .clone()
+        .all(|(a, b)| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0);
     let away = edges
         .map(|(a, b)| from_segment(p, a, b))
         .fold(f64::INFINITY, f64::min);

@@ -20,7 +20,13 @@ fn every_kind_can_be_passed_or_is_sealed() {
             let start = [arena.start[0], arena.start[1]];
             // A grid's cell less than the radius that was asked for.
             let way = planner::route(&arena.circles, 0.3, start, arena.goal, 0.0);
-            assert_eq!(way.is_some(), !arena.sealed, "{} {}", kind.name, arena.number);
+            assert_eq!(
+                way.is_some(),
+                !arena.sealed,
+                "{} {}",
+                kind.name,
+                arena.number
+            );
         }
         assert_eq!(arenas[7..9], worlds(&place, "7,8"), "{}", kind.name);
         assert_ne!(arenas[7].circles, arenas[8].circles, "{}", kind.name);

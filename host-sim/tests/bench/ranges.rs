@@ -176,10 +176,14 @@ fn cross_talk_brings_a_neighbours_echo_and_a_dead_sensor_none() {
         let echo = |r: &fuzzypilot::ports::RangeReading| matches!(r.range, Range::Echo(_));
         ranging.readings.iter().map(echo).collect::<Vec<_>>()
     };
-    let alone: Vec<usize> = (0..16).filter(|k| heard(Disturbance::MILD, None)[*k]).collect();
+    let alone: Vec<usize> = (0..16)
+        .filter(|k| heard(Disturbance::MILD, None)[*k])
+        .collect();
     assert_eq!(alone, [7, 8]);
     let with: Vec<usize> = (0..16).filter(|k| heard(crossed, None)[*k]).collect();
     assert_eq!(with, [6, 7, 8, 9]);
-    let dead: Vec<usize> = (0..16).filter(|k| heard(Disturbance::MILD, Some(7))[*k]).collect();
+    let dead: Vec<usize> = (0..16)
+        .filter(|k| heard(Disturbance::MILD, Some(7))[*k])
+        .collect();
     assert_eq!(dead, [8]);
 }

@@ -12,7 +12,8 @@ use tempfile::tempdir;
 
 const COMMON: &str = r#"{"start": [-2.25, 3.0, 1.57], "goal": [-2.25, 13.0], "goal_radius": 1.0, "cyl_radius": 0.075,
     "common_cylinders_xy": [[-4.425, 0.075], [-0.075, 0.075]]}"#;
-const LINE: &str = r#"{"w": 7, "cyl": [[-1.0, 6.5]], "path": [[-2.175, 5.075], [-2.325, 5.225]], "len": 10.0}"#;
+const LINE: &str =
+    r#"{"w": 7, "cyl": [[-1.0, 6.5]], "path": [[-2.175, 5.075], [-2.325, 5.225]], "len": 10.0}"#;
 
 fn read(place: &Path) -> Result<Vec<Arena>, String> {
     let place = place.to_str().unwrap();
@@ -69,16 +70,25 @@ fn the_folder_and_the_lines_are_the_same_world() {
     let dir = tempdir().unwrap();
     let from_lines = lines(dir.path(), COMMON, LINE).unwrap();
     assert_eq!(from_lines.len(), 1);
-    let cells: Vec<u8> = [16_i64, 0, 15, 1].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let cells: Vec<u8> = [16_i64, 0, 15, 1]
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
     let world = sdf(&[[-4.425, 0.075], [-0.075, 0.075], [-1.0, 6.5]]);
     let from_folder = folder(dir.path(), &world, &npy("<i8", "(2, 2)", &cells)).unwrap();
     assert_eq!(from_folder[0].circles, from_lines[0].circles);
     assert_eq!(from_folder[0].route.len(), 4);
     for (a, b) in from_folder[0].route.iter().zip(&from_lines[0].route) {
-        assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9, "{a:?} {b:?}");
+        assert!(
+            (a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9,
+            "{a:?} {b:?}"
+        );
     }
     // Other kinds of numbers, too.
-    let floats: Vec<u8> = [16_f32, 0.0, 15.0, 1.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let floats: Vec<u8> = [16_f32, 0.0, 15.0, 1.0]
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
     let again = folder(dir.path(), &world, &npy("<f4", "(2, 2)", &floats)).unwrap();
     assert_eq!(again, from_folder);
 }
@@ -95,7 +105,10 @@ fn packed_lines_are_read_and_half_of_them_refused() {
     assert_eq!(read(&file).unwrap(), plain);
     fs::write(&file, &packed[..packed.len() / 2]).unwrap();
     let message = read(&file).unwrap_err();
-    assert!(message.contains("worlds.jsonl.gz: cannot be read"), "{message}");
+    assert!(
+        message.contains("worlds.jsonl.gz: cannot be read"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -105,8 +118,14 @@ fn what_is_wrong_in_lines_is_named_with_its_line() {
         ("", "no world"),
         ("{\"w\": 7, \"cyl\": [[-1.0", "worlds.jsonl:1: found EOF"),
         ("{\"w\": 7}", "missing field `cyl`"),
-        ("{\"w\": 7, \"cyl\": [[1e9, 0]], \"path\": []}", "coordinates from -1000 to 1000 m"),
-        (&format!("{LINE}\n\n{LINE}"), "worlds.jsonl:3: found world 7 a second time"),
+        (
+            "{\"w\": 7, \"cyl\": [[1e9, 0]], \"path\": []}",
+            "coordinates from -1000 to 1000 m",
+        ),
+        (
+            &format!("{LINE}\n\n{LINE}"),
+            "worlds.jsonl:3: found world 7 a second time",
+        ),
         ("\u{0}\u{1}", "worlds.jsonl:1"),
     ];
     for (text, part) in cases {
@@ -128,17 +147,36 @@ fn what_is_wrong_in_the_folder_is_named_with_its_file() {
     let cases: [(&str, &[u8], &str); 9] = [
         (&good[..good.len() / 2], &path, "world_7.world: found"),
         ("<sdf version='1.6'/>", &path, "no cylinder"),
-        (&good.replace("1 1 0 0 0 0", "1 x 0 0 0 0"), &path, "world_7.world:2: found a pose"),
-        (&good.replace("0.075", "-1"), &path, "a cylinder without a radius"),
-        (&good, &path[..path.len() - 1], "path_7.npy: found a file that ends after"),
+        (
+            &good.replace("1 1 0 0 0 0", "1 x 0 0 0 0"),
+            &path,
+            "world_7.world:2: found a pose",
+        ),
+        (
+            &good.replace("0.075", "-1"),
+            &path,
+            "a cylinder without a radius",
+        ),
+        (
+            &good,
+            &path[..path.len() - 1],
+            "path_7.npy: found a file that ends after",
+        ),
         (&good, &path[..20], "a file that ends after 20 bytes"),
         (&good, b"PK\x03\x04", "a file of another kind"),
-        (&good, &npy("<i8", "(1, 3)", &[0; 24]), "an array with the header"),
+        (
+            &good,
+            &npy("<i8", "(1, 3)", &[0; 24]),
+            "an array with the header",
+        ),
         (&good, &npy("<c8", "(1, 2)", &[0; 16]), "an array of `<c8`"),
     ];
     for (world, path, part) in cases {
         let message = folder(dir.path(), world, path).unwrap_err();
-        assert!(message.contains(part) && message.contains("allowed"), "{part}: {message}");
+        assert!(
+            message.contains(part) && message.contains("allowed"),
+            "{part}: {message}"
+        );
     }
 }
 
@@ -159,7 +197,11 @@ fn the_benchmarks_own_worlds_have_the_lengths_that_are_published() {
     for arena in raw {
         let same = arenas.iter().find(|a| a.number == arena.number).unwrap();
         let mut both = [&arena, same].map(|a| {
-            let mut at: Vec<_> = a.circles.iter().map(|c| c.at.map(|x| (x * 1e4).round() as i64)).collect();
+            let mut at: Vec<_> = a
+                .circles
+                .iter()
+                .map(|c| c.at.map(|x| (x * 1e4).round() as i64))
+                .collect();
             at.sort_unstable();
             at
         });

@@ -28,13 +28,13 @@ pub fn make(rng: &mut Pcg64Mcg, options: &Options) -> Arena {
         circles.extend(wall([-half, y], [at - opening, y]));
         circles.extend(wall([at + opening, y], [half, y]));
     }
-    // Furniture in the middle of the rooms, where it leaves a way on both sides.
-    let mut y = 0.0;
-    for depth in depths {
+    // Furniture in the middle of the inner rooms, where it leaves a way all around; the others hold start and goal.
+    let mut y = depths[0];
+    for depth in &depths[1..ROOMS - 1] {
         let radius = between(rng, 0.1, 0.3);
         let at = [between(rng, -0.3, 0.3), y + depth / 2.0];
         let fits = depth / 2.0 - radius > 2.0 * options.radius + RADIUS;
-        if y > 0.0 && fits && rng.random::<f64>() < 0.6 {
+        if fits && rng.random::<f64>() < 0.6 {
             circles.push(Circle { at, radius });
         }
         y += depth;
