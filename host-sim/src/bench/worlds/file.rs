@@ -98,7 +98,7 @@ impl Source<'_> {
 
     /// Finds the first number that is not allowed.
     fn numbers(&self, at: usize, numbers: &[f64]) -> Result<(), WorldError> {
-        match numbers.iter().find(|x| !(x.abs() <= 1000.0)) {
+        match numbers.iter().find(|x| !x.is_finite() || x.abs() > 1000.0) {
             Some(x) => Err(self.wrong(at, &x.to_string(), "numbers from -1000 to 1000")),
             None => Ok(()),
         }

@@ -177,7 +177,11 @@ fn read_path(file: &Path) -> Result<Vec<[f64; 2]>, WorldError> {
         })?;
     let allowed = "a NumPy array of n × 2 grid cells, whole";
     let cells = npy::pairs(&bytes).map_err(|found| WorldError::wrong(&name, found, allowed))?;
-    if let Some(cell) = cells.iter().flatten().find(|x| !(x.abs() <= 1000.0)) {
+    if let Some(cell) = cells
+        .iter()
+        .flatten()
+        .find(|x| !x.is_finite() || x.abs() > 1000.0)
+    {
         return Err(WorldError::wrong(
             &name,
             format!("the cell {cell}"),
