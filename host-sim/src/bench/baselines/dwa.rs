@@ -32,12 +32,12 @@ pub struct Parameters {
 impl Default for Parameters {
     fn default() -> Self {
         Self {
-            weights: [2.0, 0.4, 0.4],
+            weights: [2.0, 0.4, 1.99],
             look: 1.5,
-            margin: 0.05,
-            keep: 2.0,
-            carrot: 0.8,
-            braking: 0.5,
+            margin: 0.054,
+            keep: 1.53,
+            carrot: 1.17,
+            braking: 0.318,
         }
     }
 }
