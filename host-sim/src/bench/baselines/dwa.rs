@@ -37,7 +37,7 @@ impl Default for Parameters {
             margin: 0.054,
             keep: 1.53,
             carrot: 1.17,
-            braking: 0.318,
+            braking: 0.32,
         }
     }
 }
