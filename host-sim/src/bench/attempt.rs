@@ -283,7 +283,7 @@ fn move_along(arena: &Arena, time: f64, circles: &mut [Circle]) {
     }
 }
 
-/// Distance of a body from the nearest circle, at most [`CLEARANCE_REACH`]; at or below zero is contact.
+/// Distance of a body from the nearest circle, at most 1 m; at or below zero is contact.
 pub fn body_clearance(body: &Rectangle, pose: [f64; 3], circles: &[Circle]) -> f64 {
     let frame = BodyFrame::new(pose);
     circles.iter().fold(CLEARANCE_REACH, |least, c| {
