@@ -1,17 +1,20 @@
 //! Arguments and commands.
 
 mod bench;
+mod bench_tick;
 mod errata;
 mod eval;
 mod fuzzy;
 mod hil;
 mod list;
+mod merge;
 mod run;
 mod surface;
 mod sweep;
 
 use anyhow::Context;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use host_sim::bench::worlds::error::WorldError;
 use host_sim::control::{
     AxisName, CoarseName, FineNn, InputName, IntegratorName, LawName, TablesName,
 };
@@ -58,7 +61,11 @@ enum Command {
     /// Read, check, convert and tune fuzzy systems from design files (FuzzyLite, IEC 61131-7, MATLAB); no robot is needed.
     Fuzzy(fuzzy::FuzzyArguments),
     /// Measure ticks per second of the library alone and of the whole simulation, on one core.
-    BenchTick(bench::BenchArguments),
+    BenchTick(bench_tick::BenchArguments),
+    /// Drive navigators through many worlds with many seeds on all cores, and print how often they arrive.
+    Bench(Box<bench::BenchArguments>),
+    /// Put the parts of a bench that was run with `--shard` together.
+    Merge(merge::MergeArguments),
 }
 
 /// Carries out a command line.
@@ -73,7 +80,9 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
         Some(Command::Errata(arguments)) => errata::execute(&arguments),
         Some(Command::Hil(arguments)) => hil::execute(&arguments),
         Some(Command::Fuzzy(arguments)) => fuzzy::execute(&arguments),
-        Some(Command::BenchTick(arguments)) => bench::execute(&arguments),
+        Some(Command::BenchTick(arguments)) => bench_tick::execute(&arguments),
+        Some(Command::Bench(arguments)) => bench::execute(&arguments),
+        Some(Command::Merge(arguments)) => merge::execute(&arguments),
     }
 }
 
@@ -97,7 +106,8 @@ pub fn exit_code(error: &anyhow::Error) -> u8 {
         None if error.is::<BadInput>()
             || error.is::<ReadError>()
             || error.is::<ScenarioError>()
-            || error.is::<RunError>() =>
+            || error.is::<RunError>()
+            || error.is::<WorldError>() =>
         {
             2
         }
@@ -176,10 +186,15 @@ pub fn print(text: impl Display) -> anyhow::Result<()> {
 
 /// Refuses a folder that is a file, or lies under one.
 pub fn check_folder(folder: &Path) -> Result<(), BadInput> {
+    check_folder_of("--out", folder)
+}
+
+/// The same for another option.
+pub fn check_folder_of(option: &str, folder: &Path) -> Result<(), BadInput> {
     let above = folder.ancestors().find(|p| p.symlink_metadata().is_ok());
     match above {
         Some(file) if !file.is_dir() => Err(BadInput(format!(
-            "--out {}: {} is a file; allowed is a folder, existing or new",
+            "{option} {}: {} is a file; allowed is a folder, existing or new",
             folder.display(),
             file.display()
         ))),

@@ -1,0 +1,80 @@
+//! A run again, kept tick by tick for the replay page.
+
+use super::arena::{Arena, Circle};
+use super::attempt::{Outcome, PERIOD, Setting, Step, drive};
+use super::controllers::Controller;
+use super::discs::Discs;
+use crate::recording::{Disc, Frame, Recording};
+use crate::si;
+use fuzzypilot::ports::Range;
+
+/// Runs a navigator through a world once more. What moves is shown where it was at the start.
+pub fn record(
+    controller: &Controller,
+    arena: &Arena,
+    setting: &Setting,
+    seed: u64,
+) -> (Outcome, Recording) {
+    let mission = setting.mission(arena);
+    let mut navigator = (controller.build)(&mission);
+    let mut frames = Vec::new();
+    let half_track = setting.body.half_width;
+    let outcome = drive(
+        arena,
+        &Discs::new(&arena.circles),
+        setting,
+        seed,
+        navigator.as_mut(),
+        &mut |step| frames.push(frame(step, half_track)),
+    );
+    let moving: Vec<Circle> = arena.movers.iter().map(|m| m.at(0.0)).collect();
+    let recording = Recording {
+        scenario: format!("{} in world {}", controller.name, arena.number),
+        variant: format!("{:?} after {:.1} s", outcome.ending, outcome.time_s),
+        seed,
+        period: PERIOD,
+        robot_radius: setting.body.outer_radius(),
+        obstacles: arena
+            .circles
+            .iter()
+            .chain(&moving)
+            .map(|c| Disc {
+                name: String::new(),
+                x: c.at[0],
+                y: c.at[1],
+                radius: c.radius,
+            })
+            .collect(),
+        path: vec![mission.route],
+        beams: setting.sensors.clone(),
+        tables: Vec::new(),
+        frames,
+    };
+    (outcome, recording)
+}
+
+fn frame(step: &Step<'_>, half_track: f64) -> Frame {
+    let [v, w] = step.twist;
+    Frame {
+        t: step.time,
+        truth: step.pose,
+        believed: step.believed,
+        mode: step.command.mode.name(),
+        note: "",
+        cross_track: step.cross_track,
+        clearance: step.clearance,
+        twist: [step.command.speed, step.command.yaw_rate],
+        wheels: [v - w * half_track, v + w * half_track],
+        ranges: step
+            .ranges
+            .iter()
+            .map(|reading| match reading.range {
+                Range::Echo(range) => Some(si::from_metres(range)),
+                _ => None,
+            })
+            .collect(),
+        estimate: None,
+        signals: Vec::new(),
+        fired: Vec::new(),
+    }
+}

@@ -1,0 +1,61 @@
+//! Worlds: read from the benchmark's files or from one's own, or made.
+
+pub mod barn;
+pub mod check;
+pub mod error;
+pub mod file;
+pub mod gazebo;
+pub mod generate;
+mod npy;
+pub mod numbers;
+pub mod planner;
+pub mod unmapped;
+pub mod wall;
+
+use super::arena::Arena;
+use super::body::Rectangle;
+use error::WorldError;
+use numbers::Numbers;
+use std::path::Path;
+
+/// Radius of the disc that a route is planned for where a world has none, m, and what is tried when it does not fit.
+const PLANNED: [f64; 3] = [0.36, 0.3, 0.25];
+
+/// What `load` takes, for messages.
+pub const PLACES: &str =
+    "generated:KIND, a folder with world_N.world, a .jsonl or .jsonl.gz file, a .toml file";
+
+/// The worlds of a place that were asked for, in the order of their numbers. Whether a body gets through them is left to
+/// [`check::check`].
+pub fn load(place: &str, numbers: &Numbers, body: &Rectangle) -> Result<Vec<Arena>, WorldError> {
+    let path = Path::new(place);
+    let mut arenas = if let Some(kind) = place.strip_prefix("generated:") {
+        generate::make(kind, numbers)?
+    } else if path.is_dir() {
+        gazebo::read_folder(path, numbers)?
+    } else if place.ends_with(".jsonl") || place.ends_with(".jsonl.gz") {
+        barn::read_lines(path)?
+    } else if place.ends_with(".toml") {
+        vec![file::read(path)?]
+    } else {
+        return Err(WorldError::wrong("--worlds", format!("`{place}`"), PLACES));
+    };
+    arenas.retain(|a| numbers.holds(a.number));
+    arenas.sort_by_key(|a| a.number);
+    for arena in &mut arenas {
+        if arena.route.len() < 2 {
+            plan(arena, body);
+        }
+    }
+    Ok(arenas)
+}
+
+/// Gives a world the shortest route that is not too tight; the straight line if there is none.
+fn plan(arena: &mut Arena, body: &Rectangle) {
+    let start = [arena.start[0], arena.start[1]];
+    arena.route = PLANNED
+        .iter()
+        .chain([&body.inner_radius()])
+        .find_map(|r| planner::route(&arena.circles, *r, start, arena.goal, 0.0))
+        .unwrap_or_else(|| vec![start, arena.goal]);
+}

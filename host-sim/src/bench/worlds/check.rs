@@ -1,0 +1,61 @@
+//! Whether a robot has a chance in a world at all.
+
+use super::error::WorldError;
+use super::planner;
+use crate::bench::arena::Arena;
+use crate::bench::attempt::body_clearance;
+use crate::bench::body::Rectangle;
+use rayon::prelude::*;
+
+/// Refuses worlds whose start or goal lies in an obstacle, and those without a way for a disc that fits into the body:
+/// what that one cannot pass, the body cannot. Sealed worlds must not have one.
+pub fn check(place: &str, arenas: &[Arena], body: &Rectangle) -> Result<(), WorldError> {
+    arenas.par_iter().try_for_each(|arena| {
+        fault(arena, body).map_or(Ok(()), |why| {
+            Err(WorldError::Unusable {
+                place: place.to_owned(),
+                number: arena.number,
+                why,
+            })
+        })
+    })
+}
+
+fn fault(arena: &Arena, body: &Rectangle) -> Option<String> {
+    let [gx, gy] = arena.goal;
+    let [sx, sy, _] = arena.start;
+    let moving: Vec<_> = arena.movers.iter().map(|m| m.at(0.0)).collect();
+    if body_clearance(body, arena.start, &arena.circles) <= 0.0
+        || body_clearance(body, arena.start, &moving) <= 0.0
+    {
+        return Some(format!(
+            "the robot touches an obstacle where it starts, at ({sx}, {sy}); allowed: a free start"
+        ));
+    }
+    let inside = arena.circles.iter().find(|c| {
+        let (dx, dy) = (c.at[0] - gx, c.at[1] - gy);
+        dx * dx + dy * dy < c.radius * c.radius
+    });
+    if let Some(c) = inside {
+        return Some(format!(
+            "the goal ({gx}, {gy}) is inside the obstacle at ({}, {}); allowed: a free goal",
+            c.at[0], c.at[1]
+        ));
+    }
+    let way = planner::route(
+        &arena.circles,
+        body.inner_radius(),
+        [sx, sy],
+        arena.goal,
+        arena.goal_radius,
+    );
+    match (way.is_some(), arena.sealed) {
+        (false, false) => Some(format!(
+            "no route from ({sx}, {sy}) to within {} m of ({gx}, {gy}) for a disc of {} m; allowed: a world with one, or `sealed = true`",
+            arena.goal_radius,
+            body.inner_radius()
+        )),
+        (true, true) => Some("it is called sealed and has a route; allowed: none".to_owned()),
+        _ => None,
+    }
+}

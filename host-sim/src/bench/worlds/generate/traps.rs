@@ -1,0 +1,37 @@
+//! Where going straight ends: a U to back out of, and a room without a door.
+
+use super::{Options, arena, between};
+use crate::bench::arena::Arena;
+use crate::bench::worlds::wall::walls;
+use rand_pcg::Pcg64Mcg;
+
+/// A U between start and goal, open towards the start.
+pub fn u_trap(rng: &mut Pcg64Mcg, options: &Options) -> Arena {
+    let half = options.radius + between(rng, 0.4, 1.2);
+    let depth = between(rng, 1.0, 2.5);
+    let back = between(rng, 4.5, 5.5);
+    let aside = between(rng, -0.3, 0.3);
+    let circles = walls(&[
+        [aside - half, back - depth],
+        [aside - half, back],
+        [aside + half, back],
+        [aside + half, back - depth],
+    ]);
+    arena(circles, [0.0, 0.0], [0.0, 8.0], options.radius)
+}
+
+/// Four walls around the start; the goal is outside.
+pub fn sealed(rng: &mut Pcg64Mcg, options: &Options) -> Arena {
+    let room = 2.0 * options.radius;
+    let [left, right, back, front] = std::array::from_fn(|_| room + between(rng, 0.2, 1.5));
+    let circles = walls(&[
+        [-left, -back],
+        [right, -back],
+        [right, front],
+        [-left, front],
+        [-left, -back],
+    ]);
+    let mut arena = arena(circles, [0.0, 0.0], [0.0, 8.0], options.radius);
+    arena.sealed = true;
+    arena
+}

@@ -1,0 +1,65 @@
+//! Writes a bench's report folder.
+
+use crate::cli::put;
+use anyhow::Context;
+use host_sim::bench::attempt::Ending;
+use host_sim::bench::campaign::Campaign;
+use host_sim::bench::controllers::Controller;
+use host_sim::bench::recorded::record;
+use host_sim::bench::report::{Failure, page, per_world, picture};
+use host_sim::bench::results::Results;
+use host_sim::replay;
+use std::path::Path;
+
+/// Writes `table.txt`, `per-world.csv`, `runs/*.html` and last of all `index.html`.
+pub fn write(
+    folder: &Path,
+    campaign: &Campaign,
+    chosen: &[Controller],
+    results: &[Results],
+    most: usize,
+) -> anyhow::Result<()> {
+    let runs = folder.join("runs");
+    std::fs::create_dir_all(&runs)
+        .with_context(|| format!("{}: cannot be created", runs.display()))?;
+    let table = format!("{}\n", super::table::of(results));
+    put(&folder.join("table.txt"), table.as_bytes())?;
+    put(&folder.join("per-world.csv"), per_world(results).as_bytes())?;
+
+    let mut failures = Vec::new();
+    let mut left_out = 0;
+    for (controller, result) in chosen.iter().zip(results) {
+        let failed = result.per_world.iter().zip(&campaign.arenas);
+        let failed = failed.flat_map(|(world, arena)| {
+            let attempts = world.attempts.iter();
+            attempts
+                .filter(|a| a.outcome.ending != Ending::Reached)
+                .map(move |a| (arena, a))
+        });
+        for (count, (arena, attempt)) in failed.enumerate() {
+            if count >= most {
+                left_out += 1;
+                continue;
+            }
+            let (outcome, recording) = record(controller, arena, &campaign.setting, attempt.seed);
+            let name = format!(
+                "runs/{}-{}-{}.html",
+                controller.name, arena.number, attempt.seed
+            );
+            put(&folder.join(&name), replay::html(&recording)?.as_bytes())?;
+            failures.push(Failure {
+                controller: controller.name.to_owned(),
+                world: arena.number,
+                seed: attempt.seed,
+                ending: outcome.ending,
+                time: outcome.time_s,
+                picture: picture(arena, &campaign.setting.body, &recording),
+                replay: name,
+            });
+        }
+    }
+    put(
+        &folder.join("index.html"),
+        page(results, &failures, left_out).as_bytes(),
+    )
+}

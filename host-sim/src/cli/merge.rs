@@ -1,0 +1,43 @@
+//! `host-sim merge`
+
+use super::bench::table;
+use super::{BadInput, print, put};
+use clap::Args;
+use host_sim::bench::results::Results;
+use host_sim::bench::shard::merge;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub struct MergeArguments {
+    /// What `host-sim bench --shard i/n --json FILE` wrote, all parts.
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Also write the whole to this file: what the bench would have written in one go.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub fn execute(arguments: &MergeArguments) -> anyhow::Result<()> {
+    let files = arguments
+        .files
+        .iter()
+        .map(|file| Ok((file.display().to_string(), read(file)?)))
+        .collect::<Result<Vec<_>, BadInput>>()?;
+    let whole = merge(&files).map_err(BadInput)?;
+    if let Some(file) = &arguments.json {
+        put(file, super::bench::json(&whole)?.as_bytes())?;
+    }
+    print(format_args!("{}\n", table::of(&whole)))
+}
+
+fn read(file: &Path) -> Result<Vec<Results>, BadInput> {
+    let name = file.display();
+    let text = std::fs::read_to_string(file)
+        .map_err(|e| BadInput(format!("{name}: cannot be read ({e})")))?;
+    serde_json::from_str(&text).map_err(|e| {
+        BadInput(format!(
+            "{name}:{}: found {e}; allowed: what `host-sim bench --json` writes, whole",
+            e.line()
+        ))
+    })
+}

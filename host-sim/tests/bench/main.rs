@@ -1,0 +1,9 @@
+//! The navigation bench: geometry against independent computations, worlds and their faults, campaigns from outside.
+
+mod command;
+mod contact;
+mod figures;
+mod generated;
+mod ranges;
+mod runs;
+mod world_files;
