@@ -66,6 +66,7 @@ pub mod guide;
 mod integer;
 pub mod link;
 pub mod localise;
+pub mod navigate;
 pub mod params;
 pub mod pilot;
 pub mod ports;

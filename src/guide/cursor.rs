@@ -1,6 +1,7 @@
 //! The cursor: how far along the path the robot is. It moves forward only, and looks at no more than [`LOOK`] pieces
 //! in one tick, so a path that crosses itself or comes back past itself cannot confuse it.
 
+use super::ahead::Ahead;
 use super::local::Local;
 use super::path::{Path, next};
 use super::preview::{Allowed, Preview};
@@ -113,6 +114,11 @@ impl Cursor {
             },
             laps: self.laps,
         }
+    }
+
+    /// Places along the path ahead, `spacing` apart; the first is the cursor's.
+    pub fn ahead<'a>(&self, path: &Path<'a>, spacing: Metres) -> Ahead<'a> {
+        Ahead::new(path, self.piece, self.along, spacing)
     }
 
     /// Curvature `lead` metres ahead of the cursor.
