@@ -262,8 +262,14 @@ impl<const N: usize> Navigator<N> {
         let mut carrot = guidance.foot;
         let look = const { Metres::lit("2.2") };
         let mut contradicted = false;
+        // The place ahead that is nearest to the robot, where that is nearer than the cursor.
+        let mut nearest = ((guidance.foot - pose.at).norm_squared(), Metres::ZERO);
         for place in self.cursor.ahead(path, spacing) {
             carrot = place.at;
+            let away = (place.at - pose.at).norm_squared();
+            if away < nearest.0 {
+                nearest = (away, far);
+            }
             let body = Vector::of(frame.to_body(place.at));
             let hit = |reach: Steps| {
                 let reach = reach.squared();
@@ -281,6 +287,9 @@ impl<const N: usize> Navigator<N> {
             if far > look {
                 break;
             }
+        }
+        if nearest.1 > Metres::ZERO {
+            self.cursor.skip(path, nearest.1);
         }
         self.quiet = if contradicted {
             0

@@ -70,6 +70,23 @@ impl Cursor {
         self.piece == 0 && self.along == Metres::ZERO && self.laps == 0
     }
 
+    /// Moves on by `way` metres, whatever lies between: for a robot that has left the path and meets it again farther on.
+    /// At an open path's end, or after [`LOOK`] pieces, it stays.
+    pub fn skip(&mut self, path: &Path<'_>, way: Metres) {
+        let mut left = way.max(Metres::ZERO);
+        for _ in 0..LOOK {
+            let local = Local::new(&path.piece(self.piece));
+            let to = (self.along + left).min(local.length);
+            let (place, _) = local.frame(to);
+            let step = to - self.along;
+            self.advance(path, place.at, left);
+            left = left - step;
+            if left <= Metres::ZERO {
+                break;
+            }
+        }
+    }
+
     /// Moves on to the place of the path nearest to `place`, at most `reach` metres ahead and never back.
     pub fn advance(&mut self, path: &Path<'_>, place: Point, reach: Metres) -> Fix {
         let mut budget = reach.max(Metres::ZERO);

@@ -94,7 +94,7 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
         supervisor: SupervisorParams {
             enter: m!("0.5375"),
             enter_time: const { Seconds::lit("0.3893") },
-            path_margin: m!("0.06"),
+            path_margin: m!("0.12"),
             leave: m!("0.06"),
             dwell: 5,
             stuck: 3,

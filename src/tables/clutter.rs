@@ -35,7 +35,7 @@ const DEFLECTIONS: Consequents<5, Deflection> = Consequents::new(
 const SPEEDS: Consequents<5, SpeedShare> = Consequents::new(
     [SpeedShare::lit("0"), SpeedShare::lit("1")],
     [
-        SpeedShare::lit("0.1"),
+        SpeedShare::lit("0.05"),
         SpeedShare::lit("0.3"),
         SpeedShare::lit("0.6"),
         SpeedShare::lit("0.8"),
@@ -57,7 +57,7 @@ const SPEED: RuleTable<3, 3, SpeedShare> = RuleTable::new(
     // α:  Z   M   L      s
     [   [ S,  VS, VS ], // N
         [ B,  N,  VS ], // M
-        [ VB, B,  S  ]],// F
+        [ VB, B,  VS ]],// F
     SPEEDS,
 );
 
