@@ -1,6 +1,7 @@
 //! Arguments and commands.
 
 mod bench;
+mod bench_tick;
 mod errata;
 mod eval;
 mod fuzzy;
@@ -12,6 +13,7 @@ mod sweep;
 
 use anyhow::Context;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use host_sim::bench::worlds::error::WorldError;
 use host_sim::control::{
     AxisName, CoarseName, FineNn, InputName, IntegratorName, LawName, TablesName,
 };
@@ -58,7 +60,9 @@ enum Command {
     /// Read, check, convert and tune fuzzy systems from design files (FuzzyLite, IEC 61131-7, MATLAB); no robot is needed.
     Fuzzy(fuzzy::FuzzyArguments),
     /// Measure ticks per second of the library alone and of the whole simulation, on one core.
-    BenchTick(bench::BenchArguments),
+    BenchTick(bench_tick::BenchArguments),
+    /// Drive navigators through many worlds with many seeds on all cores, and print how often they arrive.
+    Bench(Box<bench::BenchArguments>),
 }
 
 /// Carries out a command line.
@@ -73,7 +77,8 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
         Some(Command::Errata(arguments)) => errata::execute(&arguments),
         Some(Command::Hil(arguments)) => hil::execute(&arguments),
         Some(Command::Fuzzy(arguments)) => fuzzy::execute(&arguments),
-        Some(Command::BenchTick(arguments)) => bench::execute(&arguments),
+        Some(Command::BenchTick(arguments)) => bench_tick::execute(&arguments),
+        Some(Command::Bench(arguments)) => bench::execute(&arguments),
     }
 }
 
@@ -97,7 +102,8 @@ pub fn exit_code(error: &anyhow::Error) -> u8 {
         None if error.is::<BadInput>()
             || error.is::<ReadError>()
             || error.is::<ScenarioError>()
-            || error.is::<RunError>() =>
+            || error.is::<RunError>()
+            || error.is::<WorldError>() =>
         {
             2
         }

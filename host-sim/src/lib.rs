@@ -4,6 +4,7 @@
 //! `Robot::tick`, or of a robot's behind a link ([`hil`]); [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
 //! [`fuzzy`] is for fuzzy systems without a robot; [`driving`] lets one of them drive it.
 
+pub mod bench;
 pub mod control;
 pub mod driving;
 pub mod fuzzy;

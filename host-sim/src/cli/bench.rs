@@ -1,167 +1,164 @@
-//! `host-sim bench-tick`
+//! `host-sim bench`
 
-use super::{Variants, load, number};
+mod conditions;
+mod table;
+
+use super::{BadInput, print, put, whole};
 use clap::Args;
-use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
-use fuzzypilot::ports::{
-    Fault, Ports, RangeReading, RangeSensors, Side, WheelCounts, WheelDrive, WheelEncoders,
-};
-use fuzzypilot::tick::Robot;
-use fuzzypilot::units::MetresPerSecond;
-use host_sim::params::params;
-use host_sim::run::{OwnedPath, simulate};
-use host_sim::scenario::Scenario;
-use host_sim::si;
-use std::hint::black_box;
-use std::time::{Duration, Instant};
+use conditions::{Task, Trouble};
+use host_sim::bench::attempt::Setting;
+use host_sim::bench::campaign::Campaign;
+use host_sim::bench::controllers::{self, Controller};
+use host_sim::bench::results::{Conditions, Results};
+use host_sim::bench::worlds::{self, numbers::Numbers, unmapped};
+use host_sim::bench::{arena::Arena, sensors};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct BenchArguments {
-    /// Seconds a measurement.
-    #[arg(long, default_value_t = 1.0, value_parser = number(0.001, 600.0), allow_hyphen_values = true)]
-    seconds: f64,
+    /// Where the worlds are: BARN's as JSON lines (.jsonl, .jsonl.gz, with common.json beside it).
+    #[arg(long, value_name = "PLACE")]
+    worlds: String,
+    /// Which worlds: all, dev (not divisible by 6), test (the others), or a list such as 1,7,10-19,0-294/6.
+    #[arg(long, default_value = "all", value_name = "LIST")]
+    numbers: String,
+    /// What the robot is given.
+    #[arg(long, value_enum, default_value_t = Task::Path)]
+    task: Task,
+    /// Cylinders that the path knows nothing of, world,x,y,r a line; for `--task unmapped`.
+    #[arg(long, value_name = "FILE")]
+    unmapped: Option<PathBuf>,
+    /// cone16, cone8, ultrasonic5, lidar720, or cones:COUNT:FIELD:WIDTH in degrees.
+    #[arg(long, default_value = "cone16", value_name = "NAME")]
+    sensors: String,
+    /// Speed cap, m/s.
+    #[arg(long, default_value_t = 1.0, value_parser = super::number(0.05, 5.0), allow_hyphen_values = true)]
+    speed: f64,
+    /// Names of navigators between commas, or all.
+    #[arg(long, default_value = "all", value_name = "LIST")]
+    controllers: String,
+    /// Seeds a world.
+    #[arg(long, default_value_t = 1, value_parser = whole(1, 1_000_000), allow_hyphen_values = true)]
+    seeds: u64,
+    /// The first of them.
+    #[arg(long, default_value_t = 0, value_parser = whole(0, 1_000_000_000), allow_hyphen_values = true)]
+    first_seed: u64,
+    #[command(flatten, next_help_heading = "What goes wrong")]
+    trouble: Trouble,
+    /// Threads; as many as there are cores when left out. The results do not depend on it.
+    #[arg(long, value_parser = whole(1, 4096), allow_hyphen_values = true)]
+    threads: Option<u64>,
+    /// Also write all results to this file.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
 pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
-    let time = Duration::from_secs_f64(arguments.seconds);
-    let mut table = Table::new();
-    table.load_style(UTF8_FULL_CONDENSED);
-    table.set_header(["one core", "ranges", "ticks per second"]);
-    for count in [8, 16, 64] {
-        let mut scenario = load("one-obstacle", &Variants::default())?;
-        scenario.sensors.count = count;
-        let rate = match count {
-            8 => library::<8>(&scenario, time)?,
-            16 => library::<16>(&scenario, time)?,
-            _ => library::<64>(&scenario, time)?,
-        };
-        table.add_row(["library alone".to_owned(), count.to_string(), grouped(rate)]);
-    }
-    for name in ["one-obstacle", "experiment-1"] {
-        let scenario = load(name, &Variants::default())?;
-        let rate = simulation(&scenario, time)?;
-        table.add_row([
-            format!("whole simulation, {name}"),
-            scenario.sensors.count.to_string(),
-            grouped(rate),
-        ]);
-    }
-    super::print(format_args!("{table}\n"))
-}
+    let named = |option: &str, text: &str, why: String| BadInput(format!("{option} {text}: {why}"));
+    let chosen = controllers::named(&arguments.controllers)
+        .map_err(|e| named("--controllers", &arguments.controllers, e))?;
+    let sensors = sensors::named(&arguments.sensors)
+        .map_err(|e| named("--sensors", &arguments.sensors, e))?;
+    let numbers = Numbers::parse(&arguments.numbers)
+        .map_err(|e| named("--numbers", &arguments.numbers, e))?;
+    let arenas = arenas(arguments, &numbers)?;
 
-/// Ports that replay what a real run saw, so that every branch of the tick is taken as often as in life.
-struct Tape<const N: usize> {
-    counts: Vec<WheelCounts>,
-    ranges: Vec<[RangeReading; N]>,
-}
-
-struct Player<'a, const N: usize> {
-    tape: &'a Tape<N>,
-    at: usize,
-}
-
-impl<const N: usize> WheelDrive for Player<'_, N> {
-    type Error = core::convert::Infallible;
-    fn set_speed(&mut self, wheel: Side, speed: MetresPerSecond) -> Result<(), Self::Error> {
-        black_box((wheel, speed));
-        Ok(())
-    }
-}
-
-impl<const N: usize> WheelEncoders for Player<'_, N> {
-    fn counts(&mut self) -> Result<WheelCounts, Fault> {
-        self.at += 1;
-        self.tape
-            .counts
-            .get(self.at - 1)
-            .copied()
-            .ok_or(Fault::Timeout)
-    }
-}
-
-impl<const N: usize> RangeSensors for Player<'_, N> {
-    fn read(&mut self, readings: &mut [RangeReading]) {
-        self.at += 1;
-        readings.copy_from_slice(&self.tape.ranges[self.at - 1]);
-    }
-}
-
-fn library<const N: usize>(scenario: &Scenario, time: Duration) -> anyhow::Result<f64> {
-    let tape = record::<N>(scenario)?;
-    let owned = OwnedPath::new(scenario);
-    let path = owned.view()?;
-    let params = params::<N>(scenario)?;
-    let player = || Player { tape: &tape, at: 0 };
-    let mut ticks = 0u64;
-    let mut spent = Duration::ZERO;
-    while spent < time {
-        let mut robot = Robot::new(params.clone(), si::pose(scenario.start));
-        let mut ports = Ports {
-            drive: player(),
-            encoders: player(),
-            ranges: player(),
-        };
-        let begin = Instant::now();
-        for _ in 0..tape.counts.len() {
-            black_box(robot.tick(black_box(&path), &mut ports));
-        }
-        spent += begin.elapsed();
-        ticks += tape.counts.len() as u64;
-    }
-    Ok(ticks as f64 / spent.as_secs_f64())
-}
-
-/// Encoder counts and readings of one run of the scenario.
-fn record<const N: usize>(scenario: &Scenario) -> anyhow::Result<Tape<N>> {
-    use fuzzypilot::ports::Range;
-    let metres_per_count =
-        f64::from(params::<N>(scenario)?.body.metres_per_count.to_bits()) / 4_294_967_296.0;
-    let mut tape = Tape {
-        counts: Vec::new(),
-        ranges: Vec::new(),
+    let mut setting = Setting::new(sensors, arguments.speed, arguments.task.planned());
+    arguments.trouble.apply(&mut setting)?;
+    let campaign = Campaign {
+        arenas,
+        seeds: (arguments.first_seed..arguments.first_seed + arguments.seeds).collect(),
+        setting,
     };
-    let mut travel = [0.0; 2];
-    simulate(scenario, 1, &mut |step| {
-        let counts = travel.map(|t: f64| (t / metres_per_count).round() as i64 as i32);
-        tape.counts.push(WheelCounts {
-            left: counts[0],
-            right: counts[1],
-        });
-        let mut readings = [RangeReading::fresh(Range::Clear); N];
-        for (reading, seen) in readings.iter_mut().zip(step.ranges) {
-            if let Some(range) = seen {
-                *reading = RangeReading::fresh(Range::Echo(si::metres(*range)));
-            }
-        }
-        tape.ranges.push(readings);
-        travel[0] += step.wheels[0] * scenario.robot.period;
-        travel[1] += step.wheels[1] * scenario.robot.period;
-    })?;
-    Ok(tape)
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.unwrap_or(0) as usize)
+        .build()?;
+    let begin = std::time::Instant::now();
+    let results = pool.install(|| run(arguments, &campaign, &chosen));
+    let simulated: f64 = results
+        .iter()
+        .flat_map(|r| &r.per_world)
+        .flat_map(|w| &w.attempts)
+        .map(|a| a.outcome.time_s)
+        .sum();
+    let spent = begin.elapsed().as_secs_f64() * pool.current_num_threads() as f64;
+
+    if let Some(file) = &arguments.json {
+        let mut text = serde_json::to_string_pretty(&results)?;
+        text.push('\n');
+        put(file, text.as_bytes())?;
+    }
+    print(format_args!("{}\n", table::of(&results)))?;
+    print(format_args!(
+        "{simulated:.0} s driven, {:.0} × real time a thread\n",
+        simulated / spent
+    ))
 }
 
-fn simulation(scenario: &Scenario, time: Duration) -> anyhow::Result<f64> {
-    let mut ticks = 0u64;
-    let begin = Instant::now();
-    let mut seed = 1;
-    while begin.elapsed() < time {
-        simulate(scenario, seed, &mut |step| {
-            ticks += 1;
-            black_box(step);
-        })?;
-        seed += 1;
+/// The worlds that were asked for, with what the path does not know.
+fn arenas(arguments: &BenchArguments, numbers: &Numbers) -> anyhow::Result<Vec<Arena>> {
+    let mut arenas = worlds::load(&arguments.worlds)?;
+    arenas.retain(|a| numbers.holds(a.number));
+    if arenas.is_empty() {
+        return Err(BadInput(format!(
+            "--numbers {}: no such world in {}; allowed are numbers that are there",
+            arguments.numbers, arguments.worlds
+        ))
+        .into());
     }
-    Ok(ticks as f64 / begin.elapsed().as_secs_f64())
+    match (&arguments.unmapped, arguments.task) {
+        (Some(file), Task::Unmapped) => unmapped::add(file, &mut arenas)?,
+        (None, Task::Unmapped) => {
+            return Err(BadInput(
+                "--task unmapped: no cylinders; allowed with --unmapped FILE.csv".to_owned(),
+            )
+            .into());
+        }
+        (Some(_), _) => {
+            return Err(BadInput(
+                "--unmapped: for another task; allowed with --task unmapped".to_owned(),
+            )
+            .into());
+        }
+        (None, _) => {}
+    }
+    Ok(arenas)
 }
 
-fn grouped(rate: f64) -> String {
-    let digits = format!("{rate:.0}");
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
+fn run(arguments: &BenchArguments, campaign: &Campaign, chosen: &[Controller]) -> Vec<Results> {
+    let bar = bar((campaign.arenas.len() * campaign.seeds.len() * chosen.len()) as u64);
+    let results = chosen
+        .iter()
+        .map(|controller| {
+            bar.set_message(controller.name);
+            let runs = campaign.run(controller, &|| bar.inc(1));
+            let conditions = Conditions {
+                controller: controller.name.to_owned(),
+                task: arguments.task.name().to_owned(),
+                sensors: arguments.sensors.clone(),
+                worlds: arguments.worlds.clone(),
+                numbers: arguments.numbers.clone(),
+                speed: arguments.speed,
+                first_seed: arguments.first_seed,
+                seeds: arguments.seeds,
+                disturbance: arguments.trouble.words(),
+            };
+            Results::of(conditions, None, &runs)
+        })
+        .collect();
+    bar.finish_and_clear();
+    results
+}
+
+fn bar(runs: u64) -> ProgressBar {
+    let target = if std::io::stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
+    let style = ProgressStyle::with_template("{msg:12} {bar:40} {pos} of {len} runs, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::with_draw_target(Some(runs), target).with_style(style)
 }

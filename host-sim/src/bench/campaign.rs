@@ -1,0 +1,64 @@
+//! Every world with every seed, on all cores.
+
+use super::arena::Arena;
+use super::attempt::{Outcome, Setting, drive};
+use super::controllers::Controller;
+use super::discs::Discs;
+use rayon::prelude::*;
+
+/// Worlds, seeds and all that is the same for their runs.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// The worlds, in the order of the results.
+    pub arenas: Vec<Arena>,
+    /// The seeds, in the order of the results.
+    pub seeds: Vec<u64>,
+    /// The rest.
+    pub setting: Setting,
+}
+
+/// One run and what came out of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run {
+    /// World's number.
+    pub world: u32,
+    /// Seed.
+    pub seed: u64,
+    /// Result.
+    pub outcome: Outcome,
+}
+
+impl Campaign {
+    /// Runs a controller through all of it: worlds in order, the seeds of each in order, whatever the number of
+    /// threads. `done` is called after every run, from any thread.
+    pub fn run(&self, controller: &Controller, done: &(dyn Fn() + Sync)) -> Vec<Run> {
+        let discs: Vec<Discs> = self
+            .arenas
+            .iter()
+            .map(|arena| Discs::new(&arena.circles))
+            .collect();
+        let seeds = self.seeds.len();
+        (0..self.arenas.len() * seeds)
+            .into_par_iter()
+            .map(|job| {
+                let (world, seed) = (job / seeds, self.seeds[job % seeds]);
+                let arena = &self.arenas[world];
+                let mut navigator = (controller.build)(&self.setting.mission(arena));
+                let outcome = drive(
+                    arena,
+                    &discs[world],
+                    &self.setting,
+                    seed,
+                    navigator.as_mut(),
+                    &mut |_| {},
+                );
+                done();
+                Run {
+                    world: arena.number,
+                    seed,
+                    outcome,
+                }
+            })
+            .collect()
+    }
+}

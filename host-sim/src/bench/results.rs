@@ -1,0 +1,204 @@
+//! What a campaign came to, as it is written to JSON and read back.
+
+use super::attempt::{Ending, Outcome};
+use super::campaign::Run;
+use super::statistics::{bootstrap, median, wilson};
+use serde::{Deserialize, Serialize};
+
+/// What was run: the same for all of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Conditions {
+    /// Name of the navigator.
+    pub controller: String,
+    /// `path`, `goal` or `unmapped`.
+    pub task: String,
+    /// Name of the sensors.
+    pub sensors: String,
+    /// Where the worlds come from.
+    pub worlds: String,
+    /// Which of them.
+    pub numbers: String,
+    /// Speed cap, m/s.
+    pub speed: f64,
+    /// First seed.
+    pub first_seed: u64,
+    /// Seeds a world.
+    pub seeds: u64,
+    /// What is not ideal about sensors and odometry, in words.
+    pub disturbance: String,
+}
+
+/// The figures of a set of runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// Number of runs.
+    pub runs: usize,
+    /// Share that reached the goal, 0 to 1.
+    pub success: f64,
+    /// Share that touched something.
+    pub collision: f64,
+    /// Share that ran out of time or stopped elsewhere.
+    pub timeout: f64,
+    /// Share that reported to be blocked and kept to it.
+    pub blocked: f64,
+    /// Mean of the benchmark's score, 0 to 0.5.
+    pub score: f64,
+    /// Mean time of the successful runs, s; zero if there are none.
+    pub mean_time_s: f64,
+    /// Median over the runs of the least distance from anything, m.
+    pub median_min_clearance_m: f64,
+    /// RMS over the runs of each run's RMS distance from the given route, m.
+    pub cross_track_rms_m: f64,
+    /// RMS over the runs of the change of the commanded yaw rate, rad/s².
+    pub omega_rate_rms: f64,
+    /// Longest time without progress in any run, s.
+    pub longest_stall_s: f64,
+}
+
+/// 95 % intervals, low and high.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Intervals {
+    /// Of `success`, as if every run were a draw of its own (Wilson).
+    pub success: [f64; 2],
+    /// Of `collision`, likewise.
+    pub collision: [f64; 2],
+    /// Of `success`, worlds resampled (bootstrap).
+    pub success_worlds: [f64; 2],
+    /// Of `collision`, likewise.
+    pub collision_worlds: [f64; 2],
+    /// Of `score`, likewise.
+    pub score_worlds: [f64; 2],
+}
+
+/// A run in a world's list.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeedResult {
+    /// Seed.
+    pub seed: u64,
+    /// What came out.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+}
+
+/// A world's runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WorldResult {
+    /// Number.
+    pub world: u32,
+    /// Figures of its runs.
+    #[serde(flatten)]
+    pub figures: Figures,
+    /// Its runs, by seed.
+    pub attempts: Vec<SeedResult>,
+}
+
+/// A controller's campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// What was run.
+    #[serde(flatten)]
+    pub conditions: Conditions,
+    /// Which part of it this is, and of how many; none if it is all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<[u32; 2]>,
+    /// Figures of all its runs.
+    #[serde(flatten)]
+    pub figures: Figures,
+    /// Their 95 % intervals.
+    pub intervals_95: Intervals,
+    /// Worlds, by number.
+    pub per_world: Vec<WorldResult>,
+}
+
+impl Figures {
+    /// Of some runs.
+    pub fn of(outcomes: &[Outcome]) -> Self {
+        let runs = outcomes.len();
+        let n = runs.max(1) as f64;
+        let share = |ending| outcomes.iter().filter(|o| o.ending == ending).count() as f64 / n;
+        let mean = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>() / n;
+        let reached: Vec<f64> = outcomes
+            .iter()
+            .filter(|o| o.ending == Ending::Reached)
+            .map(|o| o.time_s)
+            .collect();
+        let mut clearances: Vec<f64> = outcomes.iter().map(|o| o.min_clearance_m).collect();
+        Self {
+            runs,
+            success: share(Ending::Reached),
+            collision: share(Ending::Collision),
+            timeout: share(Ending::Timeout),
+            blocked: share(Ending::Blocked),
+            score: mean(|o| o.score),
+            mean_time_s: reached.iter().sum::<f64>() / reached.len().max(1) as f64,
+            median_min_clearance_m: median(&mut clearances),
+            cross_track_rms_m: mean(|o| o.cross_track_rms_m * o.cross_track_rms_m).sqrt(),
+            omega_rate_rms: mean(|o| o.omega_rate_rms * o.omega_rate_rms).sqrt(),
+            longest_stall_s: outcomes
+                .iter()
+                .map(|o| o.longest_stall_s)
+                .fold(0.0, f64::max),
+        }
+    }
+}
+
+impl Results {
+    /// Of runs whose worlds come one after the other.
+    pub fn of(conditions: Conditions, shard: Option<[u32; 2]>, runs: &[Run]) -> Self {
+        let per_world = runs
+            .chunk_by(|a, b| a.world == b.world)
+            .map(|runs| {
+                let outcomes: Vec<Outcome> = runs.iter().map(|r| r.outcome).collect();
+                WorldResult {
+                    world: runs[0].world,
+                    figures: Figures::of(&outcomes),
+                    attempts: runs
+                        .iter()
+                        .map(|r| SeedResult {
+                            seed: r.seed,
+                            outcome: r.outcome,
+                        })
+                        .collect(),
+                }
+            })
+            .collect();
+        Self::of_worlds(conditions, shard, per_world)
+    }
+
+    /// Of worlds' results.
+    pub fn of_worlds(
+        conditions: Conditions,
+        shard: Option<[u32; 2]>,
+        per_world: Vec<WorldResult>,
+    ) -> Self {
+        let outcomes: Vec<Outcome> = per_world
+            .iter()
+            .flat_map(|w| w.attempts.iter().map(|a| a.outcome))
+            .collect();
+        let resampled = |of: fn(&Outcome) -> f64| {
+            let sums: Vec<(f64, usize)> = per_world
+                .iter()
+                .map(|w| {
+                    let sum = w.attempts.iter().map(|a| of(&a.outcome)).sum();
+                    (sum, w.attempts.len())
+                })
+                .collect();
+            bootstrap(&sums)
+        };
+        let count = |ending| outcomes.iter().filter(|o| o.ending == ending).count();
+        let intervals_95 = Intervals {
+            success: wilson(count(Ending::Reached), outcomes.len()),
+            collision: wilson(count(Ending::Collision), outcomes.len()),
+            success_worlds: resampled(|o| f64::from(u8::from(o.ending == Ending::Reached))),
+            collision_worlds: resampled(|o| f64::from(u8::from(o.ending == Ending::Collision))),
+            score_worlds: resampled(|o| o.score),
+        };
+        Self {
+            conditions,
+            shard,
+            figures: Figures::of(&outcomes),
+            intervals_95,
+            per_world,
+        }
+    }
+}
