@@ -136,6 +136,7 @@ impl<const N: usize> Navigator<N> {
         self.cursor = Cursor::new();
         self.supervisor = supervisor::State::new();
         self.field.reset();
+        self.field.forgive();
         self.quiet = u16::MAX;
     }
 
@@ -190,7 +191,7 @@ impl<const N: usize> Navigator<N> {
                 look: Steps::of(p.map.look),
             },
         );
-        let (manoeuvre, forget) = self.supervisor.decide(
+        let decided = self.supervisor.decide(
             &p.supervisor,
             &supervisor::Situation {
                 path_free: course.free,
@@ -202,9 +203,14 @@ impl<const N: usize> Navigator<N> {
                 at_goal: course.at_goal,
             },
         );
-        if forget {
+        if decided.forget {
             self.memory.forget_doubtful(&setup.eyes, outline);
         }
+        if decided.shun {
+            let tried = Point::polar(const { Metres::lit("0.45") }, ahead.heading + course.direction);
+            self.field.shun(&p.field, ahead.at + tried);
+        }
+        let manoeuvre = decided.manoeuvre;
         let wanted = self.behave(setup, manoeuvre, &course, heading.as_ref(), ahead);
         let guarded = self.guard(setup, wanted);
         self.before = core::mem::replace(&mut self.last, guarded.twist);

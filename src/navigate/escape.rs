@@ -51,12 +51,11 @@ impl Escape {
         self.left = KEPT.saturating_sub(1);
         let backward = self.twist.linear < MetresPerSecond::ZERO;
         let forward = self.twist.linear > MetresPerSecond::ZERO;
-        let held = Bias {
-            direction,
-            backward,
-            forward,
-        };
-        self.twist = best_arc(near, outline, Steps::of(margin), &held).unwrap_or_else(|| turn(map));
+        let margin = Steps::of(margin);
+        let best = |backward, forward| best_arc(near, outline, margin, direction, (backward, forward));
+        // On the way of the last choice as long as it goes on: a robot that goes to and fro leaves nothing.
+        let on = if backward || forward { best(backward, forward) } else { None };
+        self.twist = on.or_else(|| best(true, true)).unwrap_or_else(|| turn(map));
         self.twist
     }
 
@@ -66,17 +65,15 @@ impl Escape {
     }
 }
 
-/// What makes an arc better than its free length.
-struct Bias {
+/// The arc that is free longest, one that leads towards the direction counting up to three times; none if all that may be
+/// driven are blocked at once.
+fn best_arc(
+    near: &Near,
+    outline: &Outline,
+    margin: Steps,
     direction: Angle,
-    /// The robot goes backward, or forward, already.
-    backward: bool,
-    forward: bool,
-}
-
-/// The arc that is free longest; one that leads towards the direction counts up to twice, and so does one that goes on
-/// the way of the last choice: a robot that goes to and fro leaves nothing. None if all are blocked at once.
-fn best_arc(near: &Near, outline: &Outline, margin: Steps, bias: &Bias) -> Option<Twist> {
+    (may_backward, may_forward): (bool, bool),
+) -> Option<Twist> {
     let bend = const { PerMetre::lit("2") };
     let mut best = None::<(i32, Twist)>;
     for (backward, curvature) in [
@@ -87,19 +84,18 @@ fn best_arc(near: &Near, outline: &Outline, margin: Steps, bias: &Bias) -> Optio
         (false, bend),
         (false, -bend),
     ] {
+        if !(if backward { may_backward } else { may_forward }) {
+            continue;
+        }
         let free = Trajectory::arc(curvature, backward, LOOK).free(near, outline, margin);
         if free < LEAST {
             continue;
         }
         let way = Trajectory::arc(curvature, backward, free).end();
-        let (cos, _) = (way.direction() - bias.direction).cos_sin();
-        // 2 to 6 quarters, and half as much again on the way of the last choice.
+        let (cos, _) = (way.direction() - direction).cos_sin();
+        // 2 to 6 quarters.
         let toward = 4i32.wrapping_add(cos.to_bits() >> 29);
-        let on = (backward && bias.backward) || (!backward && bias.forward);
-        let worth = free
-            .bits()
-            .wrapping_mul(toward)
-            .wrapping_mul(if on { 3 } else { 2 });
+        let worth = free.bits().wrapping_mul(toward);
         if best.is_none_or(|(known, _)| worth > known) {
             let linear = if backward { -SPEED } else { SPEED };
             best = Some((

@@ -12,10 +12,11 @@
 
 use super::memory::Memory;
 use super::steps::{Steps, Vector};
-use crate::geometry::Point;
+use crate::geometry::{Point, square};
 use crate::params::ParamError;
 use crate::units::Metres;
 use fixed::types::I16F16;
+use heapless::Vec;
 
 /// Cells along a side.
 const SIDE: usize = 32;
@@ -43,6 +44,8 @@ pub struct FieldParams {
     pub halo: I16F16,
     /// How far the field is descended to the guide point; up to 2 m.
     pub ahead: Metres,
+    /// Cost added to the cells of a place where the robot got stuck, in quarters of a free cell's; twice that the next time.
+    pub shun: u8,
     /// Cells settled in a tick (or as much other work); 8 or more.
     pub budget: u16,
 }
@@ -86,6 +89,22 @@ impl FieldParams {
         }
     }
 }
+
+/// Places where the robot got stuck: dear for a while, so that another way is tried, and the dearer the more often.
+#[derive(Clone, Copy, Debug)]
+struct Shunned {
+    at: Point,
+    cost: u8,
+    /// Fields until it is forgotten.
+    left: u8,
+}
+
+/// The most places shunned.
+const SHUNNED: usize = 8;
+/// A place within this of a shunned one is the same, and cells within it are dear.
+const SHUNNED_RADIUS: Metres = Metres::lit("0.4");
+/// Fields for which a place is shunned.
+const SHUNNED_FIELDS: u8 = 80;
 
 /// Cell costs by the square of the distance to a point, 2¹⁶ squares of a step an entry.
 #[derive(Clone, Debug)]
@@ -155,6 +174,7 @@ pub struct Field {
     busy: bool,
     /// The last field's answer.
     guide: Option<Point>,
+    shunned: Vec<Shunned, SHUNNED>,
 }
 
 impl Default for Field {
@@ -177,7 +197,29 @@ impl Field {
             row: 0,
             busy: false,
             guide: None,
+            shunned: Vec::new(),
         }
+    }
+
+    /// Makes a place of the world dear for a while.
+    pub fn shun(&mut self, params: &FieldParams, at: Point) {
+        let near = |known: &&mut Shunned| (known.at - at).norm_squared() < square(SHUNNED_RADIUS);
+        if let Some(known) = self.shunned.iter_mut().find(near) {
+            known.cost = known.cost.saturating_mul(2);
+            known.left = SHUNNED_FIELDS;
+            return;
+        }
+        let new = Shunned { at, cost: params.shun, left: SHUNNED_FIELDS };
+        if self.shunned.push(new).is_err()
+            && let Some(oldest) = self.shunned.iter_mut().min_by_key(|known| known.left)
+        {
+            *oldest = new;
+        }
+    }
+
+    /// Shuns no place any more.
+    pub fn forgive(&mut self) {
+        self.shunned.clear();
     }
 
     /// Forgets the guide point, and what is under way.
@@ -241,10 +283,7 @@ impl Field {
 
     /// Column and row of a place of the world; they may lie outside.
     fn cell_of(&self, world: Point) -> (i32, i32) {
-        let place = Vector::of(world - self.corner);
-        // ±2^15 steps by 2^15: it fits.
-        let cell = |steps: Steps| steps.bits().wrapping_mul(PER_CELL) >> 24;
-        (cell(place.x), cell(place.y))
+        cell_of(Vector::of(world - self.corner))
     }
 
     /// A cell's middle from the corner.
@@ -257,6 +296,8 @@ impl Field {
         let mut index = first;
         while *budget > 0 {
             let Some(point) = memory.local(index.into()) else {
+                self.stamp_shunned();
+                *budget = budget.wrapping_sub(4 * self.shunned.len() as i32);
                 self.phase = Phase::Seed(0);
                 return;
             };
@@ -284,6 +325,26 @@ impl Field {
                     .unwrap_or(FREE);
                 if let Some(cost) = self.cost.get_mut(index) {
                     *cost = (*cost).max(dear);
+                }
+            }
+        }
+    }
+
+    fn stamp_shunned(&mut self) {
+        self.shunned.retain_mut(|place| {
+            place.left = place.left.saturating_sub(1);
+            place.left > 0
+        });
+        let radius = Steps::of(SHUNNED_RADIUS);
+        for place in &self.shunned {
+            let at = Vector::of(place.at - self.corner);
+            let (column, row) = cell_of(at);
+            for r in row.wrapping_sub(3)..=row.wrapping_add(3) {
+                for c in column.wrapping_sub(3)..=column.wrapping_add(3) {
+                    let within = (Self::middle(c, r) - at).norm_squared() < radius.squared();
+                    if let Some(cost) = index(c, r).filter(|_| within).and_then(|i| self.cost.get_mut(i)) {
+                        *cost = cost.saturating_add(place.cost);
+                    }
                 }
             }
         }
@@ -440,6 +501,13 @@ impl Field {
         }
         self.corner + Self::middle(column, row).point()
     }
+}
+
+/// Column and row of a place seen from the first cell's corner.
+fn cell_of(place: Vector) -> (i32, i32) {
+    // ±2^15 steps by 2^15: it fits.
+    let cell = |steps: Steps| steps.bits().wrapping_mul(PER_CELL) >> 24;
+    (cell(place.x), cell(place.y))
 }
 
 /// Column, row, diagonal.

@@ -13,6 +13,7 @@ use super::footprint::Outline;
 use super::sensors::{Echo, Echoes, Eye, Eyes, View};
 use super::steps::{Bearing, Steps, Vector};
 use crate::geometry::{Point, Pose};
+use crate::integer::proper_fraction;
 use crate::units::{Angle, Metres, MetresPerSecond};
 use fixed::types::I16F16;
 use heapless::Vec;
@@ -31,6 +32,10 @@ pub struct MemoryParams {
     pub disproof: Metres,
     /// A point within this of its cone's echo is supported.
     pub support: Metres,
+    /// An echo nearer than all of its cone's points by more than this is explained by none of them.
+    pub nearer: Metres,
+    /// Whether supported points are drawn half the way to a nearer echo.
+    pub snap: bool,
     /// Points farther away than this are dropped; at most 3.5 m.
     pub keep: Metres,
     /// Ticks without support after which a point is dropped; up to 3200.
@@ -181,6 +186,10 @@ impl Memory {
         const DEEP: Steps = Steps::lit("-0.03");
         let keep = Steps::of(params.keep).squared();
         let [disproof, support] = [params.disproof, params.support].map(Steps::of);
+        /// What a range's noise may be.
+        const NOISE: Steps = Steps::lit("0.01");
+        let nearer = Steps::of(params.nearer);
+        let snap = params.snap;
         let lifetime = (params.lifetime >> UNIT) as u8;
         let now = (self.tick >> UNIT) as u8;
         let (body, forward) = (self.body, self.forward);
@@ -217,7 +226,13 @@ impl Memory {
                 } else if below(range + support) && !below(range - support) {
                     record.confidence = SURE;
                     record.seen = now;
-                    explained |= 1u32.wrapping_shl(index as u32);
+                    if below(range + nearer) {
+                        explained |= 1u32.wrapping_shl(index as u32);
+                    }
+                    if snap && !below(range + NOISE) {
+                        let place = eye.at + drawn(from_eye, range);
+                        record.move_to(body + place.turned(forward));
+                    }
                 }
             }
             true
@@ -268,6 +283,18 @@ impl Memory {
     }
 }
 
+/// A place seen from its sensor, drawn half the way in to `range`.
+fn drawn(from_eye: Vector, range: Steps) -> Vector {
+    let distance = from_eye.norm();
+    let wanted = (distance + range).half();
+    let share = proper_fraction(
+        wanted.min(distance).bits().max(0).unsigned_abs(),
+        distance.bits().max(1).unsigned_abs(),
+    );
+    let share = (share >> 10) as i32;
+    Vector::new(from_eye.x.share(share), from_eye.y.share(share))
+}
+
 /// How far echoes matter at a speed: what reacting and braking take, v/5 + v²/3, and 0.4 m.
 fn insertion_range(params: &MemoryParams, speed: MetresPerSecond) -> Steps {
     let speed = Steps::of(Metres::from_bits(speed.abs().bits()));
@@ -292,6 +319,12 @@ impl Record {
             Steps::from_bits(self.x.into()),
             Steps::from_bits(self.y.into()),
         )
+    }
+
+    fn move_to(&mut self, place: Vector) {
+        if let Some(new) = Self::new(place, self.seen) {
+            (self.x, self.y) = (new.x, new.y);
+        }
     }
 
     /// Counted from an origin that moved; whether it still fits.

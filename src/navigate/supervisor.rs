@@ -29,7 +29,8 @@ pub enum Manoeuvre {
     Avoid,
     /// Out of a place where nothing is admissible: back, or turning.
     Escape,
-    /// Stands: there is no way on. Only [`Navigator::resume`](super::Navigator::resume) ends it.
+    /// Stands and says so: there is no way on. For a pause at first, then it tries again; in the end for good, until
+    /// [`Navigator::resume`](super::Navigator::resume).
     Blocked,
     /// Stands at the goal.
     Arrived,
@@ -58,11 +59,13 @@ pub struct SupervisorParams {
     pub escape_ticks: u16,
     /// Who is not this far from where he was…
     pub progress: Metres,
-    /// …after this many ticks makes no progress: doubtful points are forgotten.
+    /// …after this many ticks makes no progress: it stops, says so, and forgets doubtful points.
     pub patience: u16,
-    /// That often in a row, and the robot is blocked.
+    /// Ticks of standing before it tries again.
+    pub pause: u16,
+    /// That often in a row, and the robot is blocked for good.
     pub strikes: u8,
-    /// Who comes no nearer to the goal by `progress` for this many ticks is blocked.
+    /// Who comes no nearer to the goal by `progress` for this many ticks is blocked for good.
     pub give_up: u16,
     /// The goal is reached within this distance.
     pub arrival: Metres,
@@ -85,6 +88,17 @@ pub(super) struct Situation {
     pub to_go: Metres,
     /// The goal is reached.
     pub at_goal: bool,
+}
+
+/// What was decided.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Decided {
+    /// What to do.
+    pub manoeuvre: Manoeuvre,
+    /// Doubtful points are to be forgotten: the robot made no progress.
+    pub forget: bool,
+    /// The way that was tried is to be shunned: it led nowhere.
+    pub shun: bool,
 }
 
 /// What the higher level remembers.
@@ -119,20 +133,23 @@ impl State {
         }
     }
 
-    /// The manoeuvre of this tick, and whether doubtful points are to be forgotten.
-    pub fn decide(&mut self, params: &SupervisorParams, now: &Situation) -> (Manoeuvre, bool) {
-        if self.manoeuvre == Manoeuvre::Blocked {
-            return (Manoeuvre::Blocked, false);
+    /// The manoeuvre of this tick, and what it means for what is remembered.
+    pub fn decide(&mut self, params: &SupervisorParams, now: &Situation) -> Decided {
+        let given_up = self.strikes >= params.strikes || self.since_least >= params.give_up;
+        if self.manoeuvre == Manoeuvre::Blocked && (given_up || self.dwelt < params.pause) {
+            self.dwelt = self.dwelt.saturating_add(1);
+            return Decided { manoeuvre: Manoeuvre::Blocked, ..Decided::default() };
         }
         let forget = self.watch(params, now);
         let next = if now.at_goal {
             Manoeuvre::Arrived
-        } else if self.strikes >= params.strikes || self.since_least >= params.give_up {
+        } else if forget || self.since_least >= params.give_up {
             Manoeuvre::Blocked
         } else {
             self.next(params, now)
         };
-        if next != self.manoeuvre {
+        let begins = next != self.manoeuvre;
+        if begins {
             self.manoeuvre = next;
             self.dwelt = 0;
             self.stuck = 0;
@@ -140,7 +157,11 @@ impl State {
             self.from = now.at;
         }
         self.dwelt = self.dwelt.saturating_add(1);
-        (next, forget)
+        Decided {
+            manoeuvre: next,
+            forget,
+            shun: forget || (begins && next == Manoeuvre::Escape),
+        }
     }
 
     fn next(&mut self, params: &SupervisorParams, now: &Situation) -> Manoeuvre {

@@ -2,6 +2,7 @@
 
 use super::baselines::pure_pursuit::PurePursuit;
 use super::navigator::{Mission, Navigator};
+use super::ours::Ours;
 
 /// Makes a navigator for a run.
 pub type Build = fn(&Mission) -> Box<dyn Navigator>;
@@ -18,11 +19,18 @@ pub struct Controller {
 }
 
 /// All of them.
-pub const CONTROLLERS: &[Controller] = &[Controller {
-    name: "pure-pursuit",
-    about: "pure pursuit (Coulter 1992), blind",
-    build: |mission| Box::new(PurePursuit::new(mission)),
-}];
+pub const CONTROLLERS: &[Controller] = &[
+    Controller {
+        name: "ours",
+        about: "the library's navigator",
+        build: |mission| Box::new(Ours::new(mission)),
+    },
+    Controller {
+        name: "pure-pursuit",
+        about: "pure pursuit (Coulter 1992), blind",
+        build: |mission| Box::new(PurePursuit::new(mission)),
+    },
+];
 
 /// By names between commas; `all` is every one.
 pub fn named(list: &str) -> Result<Vec<Controller>, String> {
