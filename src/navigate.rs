@@ -207,7 +207,10 @@ impl<const N: usize> Navigator<N> {
             self.memory.forget_doubtful(&setup.eyes, outline);
         }
         if decided.shun {
-            let tried = Point::polar(const { Metres::lit("0.45") }, ahead.heading + course.direction);
+            let tried = Point::polar(
+                const { Metres::lit("0.45") },
+                ahead.heading + course.direction,
+            );
             self.field.shun(&p.field, ahead.at + tried);
         }
         let manoeuvre = decided.manoeuvre;

@@ -52,9 +52,14 @@ impl Escape {
         let backward = self.twist.linear < MetresPerSecond::ZERO;
         let forward = self.twist.linear > MetresPerSecond::ZERO;
         let margin = Steps::of(margin);
-        let best = |backward, forward| best_arc(near, outline, margin, direction, (backward, forward));
+        let best =
+            |backward, forward| best_arc(near, outline, margin, direction, (backward, forward));
         // On the way of the last choice as long as it goes on: a robot that goes to and fro leaves nothing.
-        let on = if backward || forward { best(backward, forward) } else { None };
+        let on = if backward || forward {
+            best(backward, forward)
+        } else {
+            None
+        };
         self.twist = on.or_else(|| best(true, true)).unwrap_or_else(|| turn(map));
         self.twist
     }

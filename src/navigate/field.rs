@@ -209,7 +209,11 @@ impl Field {
             known.left = SHUNNED_FIELDS;
             return;
         }
-        let new = Shunned { at, cost: params.shun, left: SHUNNED_FIELDS };
+        let new = Shunned {
+            at,
+            cost: params.shun,
+            left: SHUNNED_FIELDS,
+        };
         if self.shunned.push(new).is_err()
             && let Some(oldest) = self.shunned.iter_mut().min_by_key(|known| known.left)
         {
@@ -342,7 +346,10 @@ impl Field {
             for r in row.wrapping_sub(3)..=row.wrapping_add(3) {
                 for c in column.wrapping_sub(3)..=column.wrapping_add(3) {
                     let within = (Self::middle(c, r) - at).norm_squared() < radius.squared();
-                    if let Some(cost) = index(c, r).filter(|_| within).and_then(|i| self.cost.get_mut(i)) {
+                    if let Some(cost) = index(c, r)
+                        .filter(|_| within)
+                        .and_then(|i| self.cost.get_mut(i))
+                    {
                         *cost = cost.saturating_add(place.cost);
                     }
                 }

@@ -138,7 +138,10 @@ impl State {
         let given_up = self.strikes >= params.strikes || self.since_least >= params.give_up;
         if self.manoeuvre == Manoeuvre::Blocked && (given_up || self.dwelt < params.pause) {
             self.dwelt = self.dwelt.saturating_add(1);
-            return Decided { manoeuvre: Manoeuvre::Blocked, ..Decided::default() };
+            return Decided {
+                manoeuvre: Manoeuvre::Blocked,
+                ..Decided::default()
+            };
         }
         let forget = self.watch(params, now);
         let next = if now.at_goal {

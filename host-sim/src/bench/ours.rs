@@ -125,10 +125,17 @@ fn sensors(views: &[BeamView], like: &RangeSet<SENSORS>) -> (RangeSet<SENSORS>, 
             pose: Pose::new(at(view), si::angle(view.heading)),
             width: si::angle(view.width),
         });
-        let set = RangeSet { mounts: mounts.collect(), max_range, max_age: like.max_age };
+        let set = RangeSet {
+            mounts: mounts.collect(),
+            max_range,
+            max_age: like.max_age,
+        };
         return (set, Vec::new());
     }
-    let widest = views.iter().map(|view| view.heading.abs()).fold(0.0, f64::max);
+    let widest = views
+        .iter()
+        .map(|view| view.heading.abs())
+        .fold(0.0, f64::max);
     let place = views.first().map(at).unwrap_or_default();
     let field = si::angle(2.0 * widest);
     let set = RangeSet::sectors(place, field, max_range, like.max_age);
