@@ -244,8 +244,19 @@ impl<const N: usize> Navigator<N> {
         } else {
             self.field.reset();
         }
-        course.direction = (head_for - ahead.at).direction() - ahead.heading;
+        let toward = |place: Point| (place - ahead.at).direction() - ahead.heading;
+        course.direction = toward(head_for);
         course.distance = Steps::of((course.carrot - ahead.at).norm());
+        // The field knows directions by its cells only. Where the straight way is free and not far off, it is better.
+        let straight = toward(course.carrot);
+        let off = (course.direction - straight).abs();
+        if course.guided && off.bits() < p.field.straight.bits() {
+            let wide = setup.outline.half_width + Steps::of(p.map.soft);
+            let look = course.distance.min(Steps::of(p.map.look));
+            if self.near.corridor(Bearing::of(straight), wide, look) >= look {
+                course.direction = straight;
+            }
+        }
         course
     }
 

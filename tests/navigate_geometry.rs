@@ -106,23 +106,23 @@ proptest! {
         map.draw(&params, &near, &outline);
         for sector in 0..SECTORS {
             let (sin, cos) = (sector as f64 / SECTORS as f64 * std::f64::consts::TAU).sin_cos();
-            let free = |half_width: f64| {
+            let free = |half_width: f64, front: f64| {
                 let ahead = points.iter().filter_map(|[x, y]| {
                     let (along, beside) = (x * cos + y * sin, (y * cos - x * sin).abs());
-                    (beside < half_width && along > 0.3).then_some(along - 0.3)
+                    (beside < half_width && along > front).then_some(along - 0.3)
                 });
                 ahead.fold(1.6, f64::min)
             };
             // A corridor a little wider and one a little narrower bound what rounding can do.
             let tight = 5.0 * STEP;
             for (got, half_width) in [(f(map.hard(sector)), 0.235), (f(map.soft(sector)), 0.275)] {
-                prop_assert!(got <= free(half_width - tight) + tight, "sector {sector}: {got}");
+                prop_assert!(got <= free(half_width - tight, 0.3 + tight) + tight, "sector {sector}: {got}");
                 // Points between flank and front may shorten it further, never lengthen it.
                 let beside = points.iter().any(|[x, y]| {
                     let (along, beside) = (x * cos + y * sin, (y * cos - x * sin).abs());
                     beside < half_width + tight && along > 0.0 && along <= 0.3 + tight
                 });
-                prop_assert!(beside || got >= free(half_width + tight) - tight, "sector {sector}: {got}");
+                prop_assert!(beside || got >= free(half_width + tight, 0.3) - tight, "sector {sector}: {got}");
             }
         }
         // Turning in place as far as the map allows touches nothing.

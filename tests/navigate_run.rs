@@ -105,8 +105,8 @@ impl<const N: usize> Robot<N> {
 
     fn see(&mut self, discs: &[Disc]) {
         let mut readings = [RangeReading::NEVER_SEEN; N];
-        for i in 0..self.params.sensors.mounts.len() {
-            let mount = self.params.sensors.mounts[i];
+        let mounts = self.params.sensors.mounts.clone();
+        for (reading, mount) in readings.iter_mut().zip(&mounts) {
             let half = f64::from(mount.width.bits()) / 4_294_967_296.0 * PI;
             let heading = f64::from(mount.pose.heading.bits()) / 4_294_967_296.0 * TAU;
             let (sin, cos) = (self.pose[2] + heading).sin_cos();
@@ -115,7 +115,7 @@ impl<const N: usize> Robot<N> {
                 echo([dx * cos + dy * sin, dy * cos - dx * sin, *r], half)
             });
             let range = near.fold(f64::INFINITY, f64::min) + self.noise();
-            readings[i] = RangeReading::fresh(if range < 4.0 {
+            *reading = RangeReading::fresh(if range < 4.0 {
                 Range::Echo(metres(range.max(0.0)))
             } else {
                 Range::Clear
@@ -180,7 +180,11 @@ impl<const N: usize> Robot<N> {
             run.seconds += PERIOD;
             run.last = record.manoeuvre;
             let stands = matches!(run.last, Manoeuvre::Blocked | Manoeuvre::Arrived);
-            standing = if stands { standing + 1 } else { 0 };
+            standing = match run.last {
+                Manoeuvre::Arrived => standing + 20,
+                Manoeuvre::Blocked => standing + 1,
+                _ => 0,
+            };
             if stands || (self.pose[0] - anchor[0]).hypot(self.pose[1] - anchor[1]) > 0.4 {
                 (anchor, since) = (self.pose, run.seconds);
             }

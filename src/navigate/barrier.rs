@@ -77,9 +77,9 @@ pub fn slow(
     for (index, arc) in arcs.into_iter().enumerate() {
         // The arc being driven matters if it is another, and in the direction that is wanted.
         let same = index == 1
-            && ((arc - arcs[0]).abs() < PerMetre::lit("0.05")
+            && ((arc - arcs[0]).abs() < const { PerMetre::lit("0.05") }
                 || (driven.linear < MetresPerSecond::ZERO) != backward
-                || driven.linear.abs() < MetresPerSecond::lit("0.15"));
+                || driven.linear.abs() < const { MetresPerSecond::lit("0.15") });
         if same || speed == Steps::ZERO {
             continue;
         }
@@ -100,13 +100,13 @@ fn lookahead(params: &BarrierParams, speed: Steps) -> Steps {
     let way = (speed.squared() >> 1)
         .checked_div(braking.bits().unsigned_abs())
         .unwrap_or(0);
-    Steps::lit("0.1") + Steps::from_bits(way as i32) + Steps::from_bits(speed.bits() / 10)
+    Steps::from_bits(way as i32) + Steps::from_bits(speed.bits() / 10) + const { Steps::lit("0.1") }
 }
 
 /// share · √(2·a·(free − 0.02 m − 0.03 s·v)).
 fn allowed(params: &BarrierParams, free: Steps, speed: Steps) -> MetresPerSecond {
     let reacting = Steps::from_bits(speed.bits().wrapping_mul(3) / 100);
-    let room = (free - Steps::lit("0.02") - reacting).max(Steps::ZERO);
+    let room = (free - const { Steps::lit("0.02") } - reacting).max(Steps::ZERO);
     let squared = u64::from(params.braking.to_bits().unsigned_abs())
         .saturating_mul(room.metres().bits().unsigned_abs().into())
         .saturating_mul(2);
@@ -125,7 +125,7 @@ fn limit_turning(twist: Twist, room: (Angle, Angle)) -> Twist {
     if twist.linear.abs() >= SLOW || radians >= 1 {
         return twist;
     }
-    let left = (radians - I16F16::lit("0.02")).max(I16F16::ZERO);
+    let left = (radians - const { I16F16::lit("0.02") }).max(I16F16::ZERO);
     // 0.7² · 8 = 3.92.
     let squared = u64::from(left.to_bits().unsigned_abs()).wrapping_mul(256_901);
     let most = RadiansPerSecond::from_bits(root(squared).bits());

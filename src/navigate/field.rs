@@ -14,7 +14,7 @@ use super::memory::Memory;
 use super::steps::{Steps, Vector};
 use crate::geometry::{Point, square};
 use crate::params::ParamError;
-use crate::units::Metres;
+use crate::units::{Angle, Metres};
 use fixed::types::I16F16;
 use heapless::Vec;
 
@@ -44,6 +44,8 @@ pub struct FieldParams {
     pub halo: I16F16,
     /// How far the field is descended to the guide point; up to 2 m.
     pub ahead: Metres,
+    /// Where the straight way to the carrot is free and within this of the field's direction, it is taken instead.
+    pub straight: Angle,
     /// Cost added to the cells of a place where the robot got stuck, in quarters of a free cell's; twice that the next time.
     pub shun: u8,
     /// Cells settled in a tick (or as much other work); 8 or more.
@@ -62,7 +64,7 @@ impl FieldParams {
             (
                 self.wall_distance > Metres::ZERO
                     && self.halo_distance > Metres::ZERO
-                    && far <= Metres::lit("0.45"),
+                    && far <= const { Metres::lit("0.45") },
                 "field.wall_distance, field.halo_distance",
                 "above 0, together up to 0.45 m",
             ),
@@ -77,7 +79,7 @@ impl FieldParams {
                 "0 to 31",
             ),
             (
-                (Metres::lit("0.15")..=Metres::lit("2")).contains(&self.ahead),
+                (const { Metres::lit("0.15") }..=const { Metres::lit("2") }).contains(&self.ahead),
                 "field.ahead",
                 "0.15 to 2 m",
             ),

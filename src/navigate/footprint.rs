@@ -77,7 +77,9 @@ impl Footprint {
     /// A length that is not positive or above 2 m, fewer than three vertices, a polygon that is not convex and
     /// counter-clockwise around the origin.
     pub fn check(&self) -> Result<(), ParamError> {
-        let sound = |length: &Metres| (Metres::lit("0.01")..=Metres::lit("2")).contains(length);
+        let sound = |length: &Metres| {
+            (const { Metres::lit("0.01") }..=const { Metres::lit("2") }).contains(length)
+        };
         let (ok, field, allowed) = match self {
             Self::Rectangle {
                 front,
@@ -172,7 +174,9 @@ fn polygon(vertices: &[Point]) -> Outline {
 }
 
 fn is_convex(vertices: &[Point]) -> bool {
-    let far = |v: &Point| v.x.abs() > Metres::lit("2") || v.y.abs() > Metres::lit("2");
+    let far = |v: &Point| {
+        v.x.abs() > const { Metres::lit("2") } || v.y.abs() > const { Metres::lit("2") }
+    };
     if vertices.len() < 3 || vertices.iter().any(far) {
         return false;
     }

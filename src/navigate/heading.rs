@@ -93,7 +93,10 @@ pub fn choose(
     wanted: &Wanted,
 ) -> Option<Heading> {
     let least = Steps::of(params.least).min(wanted.distance);
-    let horizon = wanted.distance.max(Steps::lit("0.3")).min(wanted.look);
+    let horizon = wanted
+        .distance
+        .max(const { Steps::lit("0.3") })
+        .min(wanted.look);
     // Free travel as a share of the horizon, 12 fractional bits: by a product.
     let reciprocal = proper_fraction(1 << 8, horizon.bits().unsigned_abs().max(1 << 8));
     let taken = |free: Steps| {

@@ -252,7 +252,7 @@ impl Memory {
                 // Points a tenth of a metre apart over the whole cone's arc, five at most.
                 let width = eye.width.radians().to_bits() >> 2;
                 let arc = range.share(width.clamp(0, 1 << 15));
-                let spaced = Steps::lit("0.1").bits();
+                let spaced = const { Steps::lit("0.1") }.bits();
                 let count = arc.bits().wrapping_add(spaced) / spaced;
                 (range, eye.heading, half, count.clamp(1, 5))
             }
@@ -300,7 +300,7 @@ fn insertion_range(params: &MemoryParams, speed: MetresPerSecond) -> Steps {
     let speed = Steps::of(Metres::from_bits(speed.abs().bits()));
     let braking = Steps::from_bits((speed.squared() / (3 << 12)) as i32);
     let fifth = Steps::from_bits(speed.bits() / 5);
-    Steps::of(params.insert).max(Steps::lit("0.4") + fifth + braking)
+    Steps::of(params.insert).max(const { Steps::lit("0.4") } + fifth + braking)
 }
 
 impl Record {

@@ -105,7 +105,7 @@ impl<const N: usize> NavigatorParams<N> {
         let positive = |ok, field| range(ok, field, "above 0");
         positive(limits.speed > MetresPerSecond::ZERO, "limits.speed")?;
         range(
-            limits.speed <= MetresPerSecond::lit("4"),
+            limits.speed <= const { MetresPerSecond::lit("4") },
             "limits.speed",
             "up to 4 m/s",
         )?;
@@ -114,17 +114,19 @@ impl<const N: usize> NavigatorParams<N> {
         positive(limits.yaw_acceleration > 0, "limits.yaw_acceleration")?;
         positive(self.reverse > MetresPerSecond::ZERO, "reverse")?;
         range(
-            (Seconds::lit("0.005")..=Seconds::lit("0.2")).contains(&self.period),
+            (const { Seconds::lit("0.005") }..=const { Seconds::lit("0.2") })
+                .contains(&self.period),
             "period",
             "5 to 200 ms",
         )?;
         range(
-            (Seconds::ZERO..=Seconds::lit("0.5")).contains(&self.latency),
+            (Seconds::ZERO..=const { Seconds::lit("0.5") }).contains(&self.latency),
             "latency",
             "0 to 0.5 s",
         )?;
         range(
-            (Metres::lit("0.5")..=Metres::lit("3.5")).contains(&self.memory.keep),
+            (const { Metres::lit("0.5") }..=const { Metres::lit("3.5") })
+                .contains(&self.memory.keep),
             "memory.keep",
             "0.5 to 3.5 m",
         )?;
@@ -139,7 +141,7 @@ impl<const N: usize> NavigatorParams<N> {
             "up to 3200 ticks",
         )?;
         range(
-            (Metres::lit("0.2")..=Metres::lit("3")).contains(&self.map.look),
+            (const { Metres::lit("0.2") }..=const { Metres::lit("3") }).contains(&self.map.look),
             "map.look",
             "0.2 to 3 m",
         )?;

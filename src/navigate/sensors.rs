@@ -67,7 +67,7 @@ impl<const N: usize> RangeSet<N> {
     pub fn check(&self) -> Result<(), ParamError> {
         let near = |m: &Mount| {
             let at = m.pose.at;
-            at.x.abs() <= Metres::lit("2") && at.y.abs() <= Metres::lit("2")
+            at.x.abs() <= const { Metres::lit("2") } && at.y.abs() <= const { Metres::lit("2") }
         };
         let narrow = |m: &Mount| (0..=Angle::QUARTER.bits()).contains(&m.width.bits());
         let checks = [
@@ -87,7 +87,8 @@ impl<const N: usize> RangeSet<N> {
                 "0 to 90 degrees",
             ),
             (
-                (Metres::lit("0.2")..=Metres::lit("7.9")).contains(&self.max_range),
+                (const { Metres::lit("0.2") }..=const { Metres::lit("7.9") })
+                    .contains(&self.max_range),
                 "sensors.max_range",
                 "0.2 to 7.9 m",
             ),
@@ -153,7 +154,7 @@ impl Eye {
     const BEAM: Angle = Angle::deg("1");
 
     fn new(mount: &Mount) -> Self {
-        let half = Angle::from_bits(mount.width.bits() >> 1).limit(Angle::deg("45"));
+        let half = Angle::from_bits(mount.width.bits() >> 1).limit(const { Angle::deg("45") });
         let half = if half.bits() < Self::BEAM.bits() {
             Self::BEAM
         } else {

@@ -87,5 +87,7 @@ fn flank(params: &SteerParams, clearance: Steps) -> I16F16 {
     let left = clearance.max(Steps::ZERO).bits().unsigned_abs();
     let share = proper_fraction(left, flank.bits().unsigned_abs().max(1));
     let share = I8F24::from_bits(share as i32).to_num::<I16F16>();
-    I16F16::lit("0.25").saturating_add(share.saturating_mul(I16F16::lit("0.75")))
+    share
+        .saturating_mul(const { I16F16::lit("0.75") })
+        .saturating_add(const { I16F16::lit("0.25") })
 }
