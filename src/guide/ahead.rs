@@ -25,7 +25,7 @@ impl<'a> Ahead<'a> {
             path: *path,
             piece: Some((piece, Local::new(&path.piece(piece)))),
             along,
-            spacing: spacing.max(Metres::lit("0.01")),
+            spacing: spacing.max(const { Metres::lit("0.01") }),
             left: LOOK,
         }
     }

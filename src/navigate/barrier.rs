@@ -74,9 +74,9 @@ pub fn slow(
     let backward = wanted.linear < MetresPerSecond::ZERO;
     let speed = Steps::of(as_metres(wanted.linear.abs()));
     let looked = lookahead(params, speed);
-    for (index, arc) in arcs.into_iter().enumerate() {
+    for (driving, arc) in [(false, arcs[0]), (true, arcs[1])] {
         // The arc being driven matters if it is another, and in the direction that is wanted.
-        let same = index == 1
+        let same = driving
             && ((arc - arcs[0]).abs() < const { PerMetre::lit("0.05") }
                 || (driven.linear < MetresPerSecond::ZERO) != backward
                 || driven.linear.abs() < const { MetresPerSecond::lit("0.15") });
@@ -173,13 +173,13 @@ pub fn gate(
         brakes.toward(driven, rest),
     ];
     let mut best = None::<(Contact, Twist)>;
-    for (index, twist) in tries.into_iter().enumerate() {
+    for twist in tries {
         let Some(contact) =
             Trajectory::braked(driven, twist, brakes).contact(near, outline, margin)
         else {
             return Guarded {
                 twist,
-                gated: index > 0,
+                gated: twist != wanted,
                 ..Guarded::default()
             };
         };

@@ -11,7 +11,7 @@
 //! two fields the guide point stays where it is in the world.
 
 use super::memory::Memory;
-use super::steps::{Steps, Vector};
+use super::steps::{Steps, Vector, retain};
 use crate::geometry::{Point, square};
 use crate::params::ParamError;
 use crate::units::{Angle, Metres};
@@ -69,12 +69,12 @@ impl FieldParams {
                 "above 0, together up to 0.45 m",
             ),
             (
-                (1..=31).contains(&self.wall.to_num::<i32>()),
+                (1 << 16..=31 << 16).contains(&self.wall.to_bits()),
                 "field.wall",
                 "1 to 31",
             ),
             (
-                (0..=31).contains(&self.halo.to_num::<i32>()),
+                (0..=31 << 16).contains(&self.halo.to_bits()),
                 "field.halo",
                 "0 to 31",
             ),
@@ -123,8 +123,8 @@ impl Costs {
     pub(super) fn new(params: &FieldParams) -> Self {
         let mut by_square = [FREE; 64];
         let far = params.wall_distance + params.halo_distance;
-        for (i, cost) in by_square.iter_mut().enumerate() {
-            let middle = ((i as u32) << SQUARES).wrapping_add(1 << (SQUARES - 1));
+        for (i, cost) in (0..64u32).zip(&mut by_square) {
+            let middle = (i << SQUARES).wrapping_add(1 << (SQUARES - 1));
             let distance = super::steps::root(middle).metres();
             let share = |part: Metres, whole: Metres| {
                 I16F16::from_bits(crate::integer::ratio(1 << 16, part.bits(), whole.bits()))
@@ -303,7 +303,7 @@ impl Field {
         while *budget > 0 {
             let Some(point) = memory.local(index.into()) else {
                 self.stamp_shunned();
-                *budget = budget.wrapping_sub(4 * self.shunned.len() as i32);
+                *budget = budget.wrapping_sub((self.shunned.len() as i32).wrapping_mul(4));
                 self.phase = Phase::Seed(0);
                 return;
             };
@@ -337,7 +337,7 @@ impl Field {
     }
 
     fn stamp_shunned(&mut self) {
-        self.shunned.retain_mut(|place| {
+        retain(&mut self.shunned, |place| {
             place.left = place.left.saturating_sub(1);
             place.left > 0
         });

@@ -11,7 +11,7 @@
 
 use super::footprint::Outline;
 use super::sensors::{Echo, Echoes, Eye, Eyes, View};
-use super::steps::{Bearing, Steps, Vector};
+use super::steps::{Bearing, Steps, Vector, retain};
 use crate::geometry::{Point, Pose};
 use crate::integer::proper_fraction;
 use crate::units::{Angle, Metres, MetresPerSecond};
@@ -19,7 +19,7 @@ use fixed::types::I16F16;
 use heapless::Vec;
 
 /// The most points.
-pub const CAPACITY: usize = 256;
+pub const CAPACITY: usize = 208;
 
 /// The memory's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,8 +136,8 @@ impl Memory {
         self.place(pose);
         let explained = self.judge(params, outline, eyes, echoes);
         let farthest = insertion_range(params, speed);
-        for (index, (eye, echo)) in eyes.as_slice().iter().zip(echoes.as_slice()).enumerate() {
-            let known = explained >> (index & 31) & 1 == 1;
+        for (index, (eye, echo)) in (0..32u32).zip(eyes.as_slice().iter().zip(echoes.as_slice())) {
+            let known = explained >> index & 1 == 1;
             if !known && echo.range().is_some_and(|range| range <= farthest) {
                 self.insert_arc(params, eye, *echo);
             }
@@ -148,7 +148,7 @@ impl Memory {
     pub fn forget_doubtful<const N: usize>(&mut self, eyes: &Eyes<N>, outline: &Outline) {
         const NEAR: Steps = Steps::lit("0.5");
         let (body, forward) = (self.body, self.forward);
-        self.records.retain(|record| {
+        retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
             let seen = |eye: &Eye| eye.view(place - eye.at) != View::Outside;
             outline.clearance(place) < NEAR && !eyes.as_slice().iter().any(seen)
@@ -162,7 +162,7 @@ impl Memory {
         if away.x.abs() > FAR || away.y.abs() > FAR {
             // By whole steps, or the points would creep.
             let moved = if away.x.abs() < Steps::MAX && away.y.abs() < Steps::MAX {
-                self.records.retain_mut(|record| record.shift(away));
+                retain(&mut self.records, |record| record.shift(away));
                 away.point()
             } else {
                 self.records.clear();
@@ -194,7 +194,7 @@ impl Memory {
         let now = (self.tick >> UNIT) as u8;
         let (body, forward) = (self.body, self.forward);
         let mut explained = 0u32;
-        self.records.retain_mut(|record| {
+        retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
             if place.norm_squared() > keep
                 || now.wrapping_sub(record.seen) > lifetime

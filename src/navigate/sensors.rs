@@ -207,15 +207,19 @@ pub struct Eyes<const N: usize> {
 
 impl<const N: usize> Eyes<N> {
     pub(super) fn new(set: &RangeSet<N>) -> Self {
-        let eyes: Vec<Eye, N> = set.mounts.iter().map(Eye::new).collect();
+        let mut eyes: Vec<Eye, N> = Vec::new();
+        for mount in &set.mounts {
+            // There is room: as many as mounts.
+            let _ = eyes.push(Eye::new(mount));
+        }
         let first = eyes.first().map_or(Vector::default(), |eye| eye.at);
         let shared = eyes.iter().all(|eye| eye.at == first);
         let mut nearest = [0; 64];
-        for (sector, entry) in nearest.iter_mut().enumerate() {
-            let middle = Angle::from_bits(((sector as i32) << 26).wrapping_add(1 << 25));
+        for (sector, entry) in (0..64i32).zip(&mut nearest) {
+            let middle = Angle::from_bits((sector << 26).wrapping_add(1 << 25));
             let off = |eye: &Eye| (eye.heading - middle).abs().bits();
-            let best = eyes.iter().enumerate().min_by_key(|(_, eye)| off(eye));
-            *entry = best.map_or(0, |(index, _)| index as u8);
+            let best = (0..32u8).zip(&eyes).min_by_key(|(_, eye)| off(eye));
+            *entry = best.map_or(0, |(index, _)| index);
         }
         Self {
             eyes,

@@ -10,7 +10,7 @@ use crate::params::Limits;
 use crate::signals::Twist;
 use crate::tables::coarse::{CoarseTwin, SpeedShare};
 use crate::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond};
-use fixed::types::{I8F24, I16F16};
+use fixed::types::I16F16;
 
 /// Settings.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +86,8 @@ fn flank(params: &SteerParams, clearance: Steps) -> I16F16 {
     }
     let left = clearance.max(Steps::ZERO).bits().unsigned_abs();
     let share = proper_fraction(left, flank.bits().unsigned_abs().max(1));
-    let share = I8F24::from_bits(share as i32).to_num::<I16F16>();
+    // From 24 fractional bits.
+    let share = I16F16::from_bits((share >> 8) as i32);
     share
         .saturating_mul(const { I16F16::lit("0.75") })
         .saturating_add(const { I16F16::lit("0.25") })

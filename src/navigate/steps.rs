@@ -229,3 +229,23 @@ pub(super) fn root(square: u32) -> Steps {
     // The upper half of a 64-bit root's argument would be empty: scaled, its rest is what is needed.
     Steps(square_root(u64::from(square)) as i32)
 }
+
+/// Keeps what `keep` says, in order. The list's own `retain` counts with checks that stay in an image as panics.
+pub(super) fn retain<T: Copy, const N: usize>(
+    list: &mut heapless::Vec<T, N>,
+    mut keep: impl FnMut(&mut T) -> bool,
+) {
+    let mut kept = 0usize;
+    for index in 0..list.len() {
+        let Some(mut item) = list.get(index).copied() else {
+            break;
+        };
+        if keep(&mut item)
+            && let Some(place) = list.get_mut(kept)
+        {
+            *place = item;
+            kept = kept.wrapping_add(1);
+        }
+    }
+    list.truncate(kept);
+}

@@ -204,7 +204,7 @@ impl Brakes {
     /// to − Δ·|Δ|/2b, Δ being the change and b the most that a period can change.
     pub fn mean(&self, from: Twist, to: Twist) -> Twist {
         let mean = |from: i32, to: i32, most: i32| {
-            let change = to.saturating_sub(from).clamp(most.saturating_neg(), most);
+            let change = to.saturating_sub(from).min(most).max(most.saturating_neg());
             to.saturating_sub(ratio(change, change.saturating_abs() >> 1, most))
         };
         Twist {
