@@ -73,7 +73,7 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
             halo: n!("3.18"),
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
-            shun: 0,
+            shun: 12,
             budget: 400,
         },
         heading: HeadingParams {
@@ -118,5 +118,17 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
             share: n!("0.887"),
             gate: m!("0.015"),
         },
+    }
+}
+
+/// [`jackal`] with a lidar: its echoes have a direction, so that points are worth keeping from farther away.
+pub fn jackal_lidar<const N: usize>() -> NavigatorParams<N> {
+    let jackal = jackal();
+    NavigatorParams {
+        memory: MemoryParams {
+            insert: m!("2"),
+            ..jackal.memory
+        },
+        ..jackal
     }
 }

@@ -42,7 +42,13 @@ impl Ours {
     ///
     /// If the mission's robot or sensors are none that the library can drive.
     pub fn new(mission: &Mission) -> Self {
-        Self::with(mission, presets::jackal())
+        let lidar = mission.sensors.len() > SENSORS;
+        let params = if lidar {
+            presets::jackal_lidar()
+        } else {
+            presets::jackal()
+        };
+        Self::with(mission, params)
     }
 
     /// With settings of one's own; body, limits, timing and sensors are the mission's.
