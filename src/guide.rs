@@ -1,5 +1,6 @@
 //! Where the path is and where to head: the path's forms, the cursor on it, and the guidance laws.
 
+mod ahead;
 mod cursor;
 mod law;
 mod local;
@@ -7,6 +8,7 @@ mod path;
 mod preview;
 mod store;
 
+pub use ahead::Ahead;
 pub use cursor::{Cursor, Fix, LOOK};
 pub use law::{guide, pace};
 pub use path::{MAX_PIECES, Path, PathError, Segment, Waypoint};

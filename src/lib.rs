@@ -21,6 +21,9 @@
 //! nothing of robots and can be used alone. Around the tick, [`pilot`] is the application that every board runs, and
 //! [`link`] the wire to a desktop.
 //!
+//! For clutter, where one obstacle at a time is not enough, there is a second, larger tick: [`navigate`] remembers what it
+//! saw, knows the robot's outline, and finds its way out of dead ends.
+//!
 //! # Frames, signs, units
 //!
 //! x forward, y left, counter-clockwise positive (ROS REP 103); metres, seconds, radians. Angles are binary inside: a
@@ -66,6 +69,7 @@ pub mod guide;
 mod integer;
 pub mod link;
 pub mod localise;
+pub mod navigate;
 pub mod params;
 pub mod pilot;
 pub mod ports;

@@ -34,7 +34,7 @@ macro_rules! v {
 const MICROMETRE: U0F32 = U0F32::from_bits(1 << 12);
 
 /// χ∞ = 1.2 rad and k = 2 /m of the vector field; bends at 3 m/s².
-const FOLLOWER: Follower = Follower {
+pub(crate) const FOLLOWER: Follower = Follower {
     law: Law::Guided,
     tables: FineSet::Tuned,
     speed_axis: SpeedAxis::Scaled,

@@ -20,6 +20,7 @@ pub mod controllers;
 pub mod discs;
 pub mod navigator;
 pub mod odometry;
+pub mod ours;
 pub mod ranging;
 pub mod recorded;
 pub mod report;

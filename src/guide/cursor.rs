@@ -1,6 +1,7 @@
 //! The cursor: how far along the path the robot is. It moves forward only, and looks at no more than [`LOOK`] pieces
 //! in one tick, so a path that crosses itself or comes back past itself cannot confuse it.
 
+use super::ahead::Ahead;
 use super::local::Local;
 use super::path::{Path, next};
 use super::preview::{Allowed, Preview};
@@ -68,6 +69,23 @@ impl Cursor {
         self.piece == 0 && self.along == Metres::ZERO && self.laps == 0
     }
 
+    /// Moves on by `way` metres, whatever lies between: for a robot that has left the path and meets it again farther on.
+    /// At an open path's end, or after [`LOOK`] pieces, it stays.
+    pub fn skip(&mut self, path: &Path<'_>, way: Metres) {
+        let mut left = way.max(Metres::ZERO);
+        for _ in 0..LOOK {
+            let local = Local::new(&path.piece(self.piece));
+            let to = (self.along + left).min(local.length);
+            let (place, _) = local.frame(to);
+            let step = to - self.along;
+            self.advance(path, place.at, left);
+            left = left - step;
+            if left <= Metres::ZERO {
+                break;
+            }
+        }
+    }
+
     /// Moves on to the place of the path nearest to `place`, at most `reach` metres ahead and never back.
     pub fn advance(&mut self, path: &Path<'_>, place: Point, reach: Metres) -> Fix {
         let mut budget = reach.max(Metres::ZERO);
@@ -112,6 +130,11 @@ impl Cursor {
             },
             laps: self.laps,
         }
+    }
+
+    /// Places along the path ahead, `spacing` apart; the first is the cursor's.
+    pub fn ahead<'a>(&self, path: &Path<'a>, spacing: Metres) -> Ahead<'a> {
+        Ahead::new(path, self.piece, self.along, spacing)
     }
 
     /// Curvature `lead` metres ahead of the cursor.

@@ -6,6 +6,7 @@ use super::baselines::pure_pursuit::PurePursuit;
 use super::baselines::regulated::{self, Regulated};
 use super::baselines::vfh::{self, Vfh};
 use super::navigator::{Mission, Navigator};
+use super::ours::Ours;
 
 /// Makes a navigator for a run.
 pub type Build = fn(&Mission) -> Box<dyn Navigator>;
@@ -23,6 +24,11 @@ pub struct Controller {
 
 /// All of them.
 pub const CONTROLLERS: &[Controller] = &[
+    Controller {
+        name: "ours",
+        about: "the library's navigator",
+        build: |mission| Box::new(Ours::new(mission)),
+    },
     Controller {
         name: "pure-pursuit",
         about: "pure pursuit (Coulter 1992), blind",

@@ -1,0 +1,472 @@
+//! Navigation through clutter: the second, larger tick. It is a module of its own beside [`tick::Robot`](crate::tick::Robot),
+//! because a robot that only follows paths and passes single obstacles must pay neither its memory nor its instructions.
+//!
+//! ```text
+//!  echoes ─▶ memory ─▶ near ─▶ polar map ─▶ supervise ─▶ follow: fine tables      ─▶ barrier ─▶ twist
+//!  pose              predicted  feasible                  avoid:  field, heading,     arc,
+//!                    body       headings                          coarse tables       brake gate
+//!                                                         escape: short arcs
+//! ```
+//!
+//! The geometry decides where the robot can go, the rule tables how it turns and how fast it drives there, and the barrier
+//! has the last word. Everything is integers; nothing allocates; every loop is bounded.
+//!
+//! The design follows the polar histogram methods (Ulrich and Borenstein, *VFH+*, ICRA 1998) in its map and choice of the
+//! heading, and dynamic-window methods (Fox, Burgard and Thrun, *The dynamic window approach*, 1997) in its admissible
+//! speeds.
+
+mod barrier;
+mod escape;
+mod field;
+mod footprint;
+mod heading;
+mod memory;
+mod near;
+mod params;
+mod polar;
+pub mod presets;
+mod sensors;
+mod steer;
+mod steps;
+mod supervisor;
+mod trajectory;
+
+pub use barrier::{BarrierParams, Guarded, gate, slow};
+pub use field::{Field, FieldParams};
+pub use footprint::{Footprint, MAX_VERTICES, Outline};
+pub use heading::{Heading, HeadingParams};
+pub use memory::{CAPACITY, Memory, MemoryParams};
+pub use near::{MAX_NEAR, Motion, Near};
+pub use params::{NavigatorParams, Setup};
+pub use polar::{MapParams, PolarMap, SECTORS};
+pub use sensors::{Echo, Echoes, Eyes, RangeSet, SENSORS};
+pub use steer::SteerParams;
+pub use steps::{Bearing, Steps, Vector};
+pub use supervisor::{Manoeuvre, SupervisorParams};
+pub use trajectory::{Brakes, MAX_STEPS, Trajectory};
+
+use crate::behaviour::follower::follow;
+use crate::geometry::{Point, Pose};
+use crate::guide::{Cursor, Path, guide};
+use crate::ports::RangeReading;
+use crate::signals::{Guidance, Twist};
+use crate::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond};
+use heading::{Wanted, choose};
+
+/// Where to go.
+#[derive(Clone, Copy, Debug)]
+pub enum Task<'a> {
+    /// To a place of the world, whichever way.
+    Goal(Point),
+    /// Along a path, around what it does not know.
+    Path(&'a Path<'a>),
+}
+
+/// What one tick decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NavigationRecord {
+    /// What the navigator does.
+    pub manoeuvre: Manoeuvre,
+    /// The twist to drive.
+    pub twist: Twist,
+    /// The twist that the manoeuvre wanted.
+    pub wanted: Twist,
+    /// What the barrier made of it.
+    pub guarded: Guarded,
+    /// Heading chosen, if one was admissible; body frame.
+    pub heading: Option<Heading>,
+    /// Direction wanted, body frame.
+    pub direction: Angle,
+    /// Distance of the nearest known point to the outline.
+    pub clearance: Metres,
+    /// Points remembered.
+    pub points: u16,
+}
+
+/// All that the navigator remembers from tick to tick.
+#[derive(Clone, Debug)]
+pub struct Navigator<const N: usize> {
+    echoes: Echoes<N>,
+    memory: Memory,
+    near: Near,
+    map: PolarMap,
+    field: Field,
+    cursor: Cursor,
+    supervisor: supervisor::State,
+    escape: escape::Escape,
+    /// The last command, and the one before.
+    last: Twist,
+    before: Twist,
+    /// The last heading chosen, world.
+    chosen: Angle,
+    /// Ticks since the path was last contradicted; saturates.
+    quiet: u16,
+}
+
+impl<const N: usize> Default for Navigator<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// How far from the middle of the body points are looked at.
+const LOOK: Steps = Steps::lit("2");
+
+impl<const N: usize> Navigator<N> {
+    /// A robot at rest that has seen nothing.
+    pub const fn new() -> Self {
+        Self {
+            echoes: Echoes::new(),
+            memory: Memory::new(),
+            near: Near::new(),
+            map: PolarMap::new(),
+            field: Field::new(),
+            cursor: Cursor::new(),
+            supervisor: supervisor::State::new(),
+            escape: escape::Escape::new(),
+            last: Twist::REST,
+            before: Twist::REST,
+            chosen: Angle::ZERO,
+            quiet: u16::MAX,
+        }
+    }
+
+    /// Begins a new task; what was seen stays known.
+    pub fn restart(&mut self) {
+        self.cursor = Cursor::new();
+        self.supervisor = supervisor::State::new();
+        self.field.reset();
+        self.field.forgive();
+        self.quiet = u16::MAX;
+    }
+
+    /// Tries again after [`Manoeuvre::Blocked`].
+    pub fn resume(&mut self) {
+        self.supervisor = supervisor::State::new();
+    }
+
+    /// Takes over the readings of single sensors, in the order of their mounts.
+    pub fn see(&mut self, setup: &Setup<N>, readings: &[RangeReading]) {
+        self.echoes.take(&setup.eyes, readings, self.last.linear);
+    }
+
+    /// Takes over a lidar's scan: direction (body frame) and range of each beam, a range of 0 for no return.
+    pub fn see_scan(&mut self, setup: &Setup<N>, beams: impl IntoIterator<Item = (Angle, Metres)>) {
+        self.echoes.reduce(&setup.eyes, beams);
+    }
+
+    /// The remembered points.
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// One control period, after [`Navigator::see`]: `pose` is the believed one. Call it every period.
+    pub fn step(&mut self, setup: &Setup<N>, pose: Pose, task: Task<'_>) -> NavigationRecord {
+        let p = &setup.params;
+        let outline = &setup.outline;
+        self.memory.update(
+            &p.memory,
+            outline,
+            &setup.eyes,
+            &self.echoes,
+            pose,
+            self.last.linear,
+        );
+        // What is decided now acts after the latency; until then the last command does.
+        let moved = Motion::of(setup.brakes.mean(self.before, self.last), p.latency);
+        let ahead = moved.from(pose);
+        self.near
+            .collect(self.memory.points(), outline, moved, LOOK);
+        self.map.draw(&p.map, &self.near, outline);
+
+        let course = self.course(setup, pose, ahead, task);
+        let heading = choose(
+            &p.heading,
+            &setup.weights,
+            &self.map,
+            &Wanted {
+                direction: course.direction,
+                last: self.chosen - ahead.heading,
+                distance: course.distance,
+                look: Steps::of(p.map.look),
+            },
+        );
+        let decided = self.supervisor.decide(
+            &p.supervisor,
+            &supervisor::Situation {
+                path_free: course.free,
+                path_clear: course.clear,
+                admissible: heading.is_some(),
+                last: self.last,
+                at: pose.at,
+                to_go: course.to_go,
+                at_goal: course.at_goal,
+            },
+        );
+        if decided.forget {
+            self.memory.forget_doubtful(&setup.eyes, outline);
+        }
+        if decided.shun {
+            let tried = Point::polar(
+                const { Metres::lit("0.45") },
+                ahead.heading + course.direction,
+            );
+            self.field.shun(&p.field, ahead.at + tried);
+        }
+        let manoeuvre = decided.manoeuvre;
+        let wanted = self.behave(setup, manoeuvre, &course, heading.as_ref(), ahead);
+        let guarded = self.guard(setup, wanted);
+        self.before = core::mem::replace(&mut self.last, guarded.twist);
+        NavigationRecord {
+            manoeuvre,
+            twist: guarded.twist,
+            wanted,
+            guarded,
+            heading,
+            direction: course.direction,
+            clearance: self.near.clearance().metres(),
+            points: self.memory.len() as u16,
+        }
+    }
+
+    /// Where to head: along the path while it is free, else by the guide field.
+    fn course(&mut self, setup: &Setup<N>, pose: Pose, ahead: Pose, task: Task<'_>) -> Course {
+        let p = &setup.params;
+        let mut course = match task {
+            Task::Goal(goal) => Course::to(goal, pose.at, p.supervisor.arrival),
+            Task::Path(path) => self.along(setup, path, pose, ahead),
+        };
+        let mut head_for = course.carrot;
+        if course.guided {
+            self.field
+                .work(&p.field, &setup.costs, &self.memory, pose.at, course.carrot);
+            head_for = self.field.guide().unwrap_or(course.carrot);
+        } else {
+            self.field.reset();
+        }
+        let toward = |place: Point| (place - ahead.at).direction() - ahead.heading;
+        course.direction = toward(head_for);
+        course.distance = Steps::of((course.carrot - ahead.at).norm());
+        // The field knows directions by its cells only. Where the straight way is free and not far off, it is better.
+        let straight = toward(course.carrot);
+        let off = (course.direction - straight).abs();
+        if course.guided && off.bits() < p.field.straight.bits() {
+            let wide = setup.outline.half_width + Steps::of(p.map.soft);
+            let look = course.distance.min(Steps::of(p.map.look));
+            if self.near.corridor(Bearing::of(straight), wide, look) >= look {
+                course.direction = straight;
+            }
+        }
+        course
+    }
+
+    fn along(&mut self, setup: &Setup<N>, path: &Path<'_>, pose: Pose, ahead: Pose) -> Course {
+        let p = &setup.params;
+        let timing = (p.period, p.latency);
+        let guidance = guide(
+            &p.follower,
+            &p.limits,
+            timing,
+            path,
+            &mut self.cursor,
+            pose,
+            self.last,
+        );
+        let speed = Metres::from_bits(self.last.linear.abs().over(p.supervisor.enter_time).bits());
+        let need = p.supervisor.enter + speed;
+        let reach = setup.outline.half_width + Steps::of(p.supervisor.path_margin);
+        let frame = ahead.frame();
+        let spacing = const { Metres::lit("0.2") };
+        let (mut free, mut clear) = (true, true);
+        let mut far = Metres::ZERO;
+        let mut carrot = guidance.foot;
+        let look = const { Metres::lit("2.2") };
+        let mut contradicted = false;
+        // The place ahead that is nearest to the robot, where that is nearer than the cursor.
+        let mut nearest = ((guidance.foot - pose.at).norm_squared(), Metres::ZERO);
+        for place in self.cursor.ahead(path, spacing) {
+            carrot = place.at;
+            let away = (place.at - pose.at).norm_squared();
+            if away < nearest.0 {
+                nearest = (away, far);
+            }
+            let body = Vector::of(frame.to_body(place.at));
+            let hit = |reach: Steps| {
+                let reach = reach.squared();
+                self.near
+                    .spots()
+                    .iter()
+                    .any(|spot| (spot.at() - body).norm_squared() < reach)
+            };
+            if hit(reach) {
+                contradicted = true;
+                clear = false;
+                free &= far > need;
+            }
+            far = far + spacing;
+            if far > look {
+                break;
+            }
+        }
+        if nearest.1 > Metres::ZERO {
+            self.cursor.skip(path, nearest.1);
+        }
+        self.quiet = if contradicted {
+            0
+        } else {
+            self.quiet.saturating_add(1)
+        };
+        let close = guidance.cross_track.abs() < const { Metres::lit("0.3") };
+        let touching = self.near.clearance() < Steps::of(p.supervisor.leave);
+        Course {
+            carrot,
+            guided: true,
+            free: free && close && !touching,
+            clear: clear && close && !touching,
+            to_go: guidance.remaining,
+            at_goal: guidance.at_end,
+            guidance: Some(guidance),
+            ..Course::default()
+        }
+    }
+
+    /// The twist that the manoeuvre wants.
+    fn behave(
+        &mut self,
+        setup: &Setup<N>,
+        manoeuvre: Manoeuvre,
+        course: &Course,
+        heading: Option<&Heading>,
+        ahead: Pose,
+    ) -> Twist {
+        let p = &setup.params;
+        if manoeuvre != Manoeuvre::Escape {
+            self.escape.reset();
+        }
+        match (manoeuvre, heading, &course.guidance) {
+            (Manoeuvre::Follow, _, Some(guidance)) => {
+                self.chosen = ahead.heading;
+                follow(
+                    &setup.fine,
+                    &p.follower,
+                    &p.limits,
+                    p.period,
+                    guidance,
+                    self.last,
+                )
+                .twist
+            }
+            (Manoeuvre::Escape, ..) => {
+                self.chosen = ahead.heading;
+                let margin = p.barrier.margin;
+                self.escape.drive(
+                    &self.near,
+                    &setup.outline,
+                    &self.map,
+                    margin,
+                    course.direction,
+                )
+            }
+            (Manoeuvre::Blocked | Manoeuvre::Arrived, ..) => Twist::REST,
+            (_, Some(heading), _) => {
+                self.chosen = ahead.heading + heading.angle;
+                let mut twist = steer::steer(&p.steer, &p.limits, heading, self.near.clearance());
+                twist.linear = twist.linear.min(approach(course.to_go));
+                twist
+            }
+            (_, None, _) => turn_toward(course.direction, &self.map),
+        }
+    }
+
+    /// Barrier and gate.
+    fn guard(&self, setup: &Setup<N>, wanted: Twist) -> Guarded {
+        let p = &setup.params;
+        let room = (self.map.left, self.map.right);
+        let wanted = Twist {
+            linear: wanted.linear.min(p.limits.speed).max(-p.reverse),
+            angular: wanted
+                .angular
+                .limit(RadiansPerSecond::new(p.limits.yaw_rate)),
+        };
+        let slowed = slow(
+            &p.barrier,
+            &self.near,
+            &setup.outline,
+            room,
+            self.last,
+            wanted,
+        );
+        let gentle = Brakes {
+            angular: RadiansPerSecond::from_bits(
+                params::per(p.steer.yaw_acceleration, p.period).bits(),
+            ),
+            ..setup.brakes
+        };
+        let stepped = gentle.toward(self.last, slowed);
+        let guarded = gate(
+            &p.barrier,
+            &self.near,
+            &setup.outline,
+            setup.brakes,
+            self.last,
+            stepped,
+        );
+        Guarded {
+            slowed: slowed != wanted,
+            ..guarded
+        }
+    }
+}
+
+/// What the task asks for this tick.
+#[derive(Clone, Debug, Default)]
+struct Course {
+    /// The place to reach, world.
+    carrot: Point,
+    /// By the guide field.
+    guided: bool,
+    free: bool,
+    clear: bool,
+    to_go: Metres,
+    at_goal: bool,
+    guidance: Option<Guidance>,
+    /// Body frame.
+    direction: Angle,
+    distance: Steps,
+}
+
+impl Course {
+    fn to(goal: Point, at: Point, arrival: Metres) -> Self {
+        let to_go = (goal - at).norm();
+        Self {
+            carrot: goal,
+            guided: true,
+            to_go,
+            at_goal: to_go < arrival,
+            ..Self::default()
+        }
+    }
+}
+
+/// Speed at which 1 m/s² still stops at the goal: √(2·s), and 0.05 m/s so that it is reached.
+fn approach(to_go: Metres) -> MetresPerSecond {
+    if to_go > const { Metres::lit("8") } {
+        return MetresPerSecond::MAX;
+    }
+    let root = crate::geometry::root(u64::from(to_go.bits().max(0).unsigned_abs()) << 17);
+    MetresPerSecond::from_bits(root.bits()) + const { MetresPerSecond::lit("0.05") }
+}
+
+/// In place towards a direction, or to the side with more room if that way is closed.
+fn turn_toward(direction: Angle, map: &PolarMap) -> Twist {
+    const RATE: RadiansPerSecond = RadiansPerSecond::lit("1");
+    let left = if map.can_turn(direction) {
+        direction.is_left()
+    } else {
+        map.left.bits() >= map.right.bits()
+    };
+    Twist {
+        linear: MetresPerSecond::ZERO,
+        angular: if left { RATE } else { -RATE },
+    }
+}

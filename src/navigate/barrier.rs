@@ -1,0 +1,198 @@
+//! The last barrier before the wheels: no command passes after which braking could touch a point that is known.
+//!
+//! It knows the outline, the points near it and what the brakes can do; it knows nothing of paths, maps, rules or modes.
+//!
+//! 1. **Arc barrier.** Along the arc of the wanted twist, and along the arc being driven, the free length s allows a speed
+//!    of √(2·a·s) with a gentle deceleration a: the robot slows early and smoothly.
+//! 2. **Brake gate.** The wanted twist for one period, then both brakes in full: if on that way a point comes closer than
+//!    the margin while it comes closer still, gentler twists are tried in turn, and braking in full is the last of them.
+//!
+//! **What it promises.** Suppose that
+//! * the robot moves as commanded: within a period it is at the commanded twist, and both brakes decelerate at least as
+//!   [`Brakes`] says;
+//! * what is commanded now begins to act after the latency, and until then the last command acts;
+//! * obstacles stand still, and each has a point in memory that is nearer than the margin to the place of its surface that
+//!   is touched first;
+//! * the first such point is known while full braking still stays clear of it, which at speed v is v·(period + latency) +
+//!   v²/2a and the margin ahead of it.
+//!
+//! Then no known point is ever touched: if the command passed last period, braking in full now is the tail of the way that
+//! was found clear then, so there is always a twist that passes. `tests/navigate_barrier.rs` holds that as a property.
+//! **Outside of it**: moving obstacles, what no sensor has seen, wheels that slip, and a cone whose echo was explained by a
+//! neighbouring point (its obstacle may stand up to half the cone's arc beside the point).
+
+use super::footprint::Outline;
+use super::near::Near;
+use super::steps::Steps;
+use super::trajectory::{Brakes, Contact, Trajectory, as_metres, curvature};
+use crate::geometry::root;
+use crate::signals::Twist;
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
+use fixed::types::I16F16;
+
+/// The barrier's settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BarrierParams {
+    /// Margin of the arc barrier.
+    pub margin: Metres,
+    /// Deceleration that the arc barrier plans with, m/s².
+    pub braking: I16F16,
+    /// Share of the planned speed that is used, 0 to 1.
+    pub share: I16F16,
+    /// Margin of the brake gate.
+    pub gate: Metres,
+}
+
+/// What the barrier made of a wanted twist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Guarded {
+    /// The twist that passes.
+    pub twist: Twist,
+    /// The arc barrier slowed it.
+    pub slowed: bool,
+    /// The brake gate changed it.
+    pub gated: bool,
+    /// Not even braking in full stays clear: a point was seen too late.
+    pub trapped: bool,
+}
+
+/// No arc is followed that is tighter than this.
+const TIGHTEST: PerMetre = PerMetre::lit("6");
+
+/// Speed of the wanted twist limited by the free length of the arcs ahead. `room` are the angles that the robot can turn in
+/// place to the left and right.
+pub fn slow(
+    params: &BarrierParams,
+    near: &Near,
+    outline: &Outline,
+    room: (Angle, Angle),
+    driven: Twist,
+    wanted: Twist,
+) -> Twist {
+    let mut twist = wanted;
+    let arcs = [curvature(wanted, TIGHTEST), curvature(driven, TIGHTEST)];
+    let backward = wanted.linear < MetresPerSecond::ZERO;
+    let speed = Steps::of(as_metres(wanted.linear.abs()));
+    let looked = lookahead(params, speed);
+    for (driving, arc) in [(false, arcs[0]), (true, arcs[1])] {
+        // The arc being driven matters if it is another, and in the direction that is wanted.
+        let same = driving
+            && ((arc - arcs[0]).abs() < const { PerMetre::lit("0.05") }
+                || (driven.linear < MetresPerSecond::ZERO) != backward
+                || driven.linear.abs() < const { MetresPerSecond::lit("0.15") });
+        if same || speed == Steps::ZERO {
+            continue;
+        }
+        let way = Trajectory::arc(arc, backward, looked);
+        let free = way.free(near, outline, Steps::of(params.margin));
+        if free >= looked {
+            continue;
+        }
+        let allowed = allowed(params, free, speed);
+        twist.linear = twist.linear.limit(allowed);
+    }
+    limit_turning(twist, room)
+}
+
+/// Distance at which a speed begins to be limited: 0.1 m + v²/2a + v/10.
+fn lookahead(params: &BarrierParams, speed: Steps) -> Steps {
+    let braking = Steps::of(Metres::new(params.braking)).max(Steps::from_bits(1));
+    let way = (speed.squared() >> 1)
+        .checked_div(braking.bits().unsigned_abs())
+        .unwrap_or(0);
+    Steps::from_bits(way as i32) + Steps::from_bits(speed.bits() / 10) + const { Steps::lit("0.1") }
+}
+
+/// share · √(2·a·(free − 0.02 m − 0.03 s·v)).
+fn allowed(params: &BarrierParams, free: Steps, speed: Steps) -> MetresPerSecond {
+    let reacting = Steps::from_bits(speed.bits().wrapping_mul(3) / 100);
+    let room = (free - const { Steps::lit("0.02") } - reacting).max(Steps::ZERO);
+    let squared = u64::from(params.braking.to_bits().unsigned_abs())
+        .saturating_mul(room.metres().bits().unsigned_abs().into())
+        .saturating_mul(2);
+    MetresPerSecond::from_bits(root(squared).bits()).scale(params.share)
+}
+
+/// A robot that nearly stands turns no faster than it can stop within its room: 0.7·√(2·4 rad/s²·room).
+fn limit_turning(twist: Twist, room: (Angle, Angle)) -> Twist {
+    const SLOW: MetresPerSecond = MetresPerSecond::lit("0.15");
+    let room = if twist.angular >= RadiansPerSecond::ZERO {
+        room.0
+    } else {
+        room.1
+    };
+    let radians = room.radians();
+    if twist.linear.abs() >= SLOW || radians >= 1 {
+        return twist;
+    }
+    let left = (radians - const { I16F16::lit("0.02") }).max(I16F16::ZERO);
+    // 0.7² · 8 = 3.92.
+    let squared = u64::from(left.to_bits().unsigned_abs()).wrapping_mul(256_901);
+    let most = RadiansPerSecond::from_bits(root(squared).bits());
+    Twist {
+        angular: twist.angular.limit(most),
+        ..twist
+    }
+}
+
+/// The first of the wanted twist and gentler ones after which braking in full stays clear of every point near; if none does,
+/// the one that comes to it last. `driven` is the twist when the command begins to act, and what is returned lies within one
+/// period's brakes of it or is the wanted one.
+pub fn gate(
+    params: &BarrierParams,
+    near: &Near,
+    outline: &Outline,
+    brakes: Brakes,
+    driven: Twist,
+    wanted: Twist,
+) -> Guarded {
+    let margin = Steps::of(params.gate);
+    let rest = Twist::REST;
+    let slower = Twist {
+        linear: MetresPerSecond::from_bits(wanted.linear.bits() >> 1),
+        ..wanted
+    };
+    let still = Twist {
+        linear: MetresPerSecond::ZERO,
+        ..wanted
+    };
+    let straighter = Twist {
+        linear: slower.linear,
+        angular: RadiansPerSecond::from_bits(driven.angular.bits() >> 1),
+    };
+    let turning = Twist {
+        linear: MetresPerSecond::ZERO,
+        angular: RadiansPerSecond::from_bits(wanted.angular.bits() / 2),
+    };
+    let tries = [
+        wanted,
+        brakes.toward(driven, slower),
+        brakes.toward(driven, still),
+        brakes.toward(driven, straighter),
+        brakes.toward(driven, turning),
+        brakes.toward(driven, rest),
+    ];
+    let mut best = None::<(Contact, Twist)>;
+    for twist in tries {
+        let Some(contact) =
+            Trajectory::braked(driven, twist, brakes).contact(near, outline, margin)
+        else {
+            return Guarded {
+                twist,
+                gated: twist != wanted,
+                ..Guarded::default()
+            };
+        };
+        let later =
+            |known: &(Contact, Twist)| (contact.step, contact.part) >= (known.0.step, known.0.part);
+        if best.as_ref().is_none_or(later) {
+            best = Some((contact, twist));
+        }
+    }
+    Guarded {
+        twist: best.map_or(rest, |(_, twist)| twist),
+        gated: true,
+        trapped: true,
+        ..Guarded::default()
+    }
+}

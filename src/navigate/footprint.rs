@@ -1,0 +1,245 @@
+//! The robot's outline seen from above, and how far a point of the body's frame is from it.
+//!
+//! Clearance is the Euclidean distance to the outline, below zero inside it: what stands beside a flank and what stands
+//! before a corner are told apart, which a disc cannot.
+
+use super::steps::{Bearing, Steps, Vector, root};
+use crate::geometry::Point;
+use crate::params::ParamError;
+use crate::units::Metres;
+use heapless::Vec;
+
+/// The most vertices of a polygon.
+pub const MAX_VERTICES: usize = 8;
+
+/// The robot's outline, body frame: the origin is the middle of the axle.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Footprint {
+    /// A rectangle along the robot's axes.
+    Rectangle {
+        /// From the axle to the front.
+        front: Metres,
+        /// From the axle to the rear; positive.
+        rear: Metres,
+        /// Half the width.
+        half_width: Metres,
+    },
+    /// A convex polygon around the origin, counter-clockwise.
+    Polygon(Vec<Point, MAX_VERTICES>),
+    /// A disc about the origin.
+    Disc {
+        /// Its radius.
+        radius: Metres,
+    },
+}
+
+/// A footprint made ready for a tick's many questions.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    shape: Shape,
+    /// Farthest point ahead.
+    pub(super) front: Steps,
+    /// Farthest point behind; positive.
+    pub(super) rear: Steps,
+    /// Farthest point to a side.
+    pub(super) half_width: Steps,
+    /// Farthest point of all: the disc that it turns in.
+    pub(super) reach: Steps,
+}
+
+#[derive(Clone, Debug)]
+enum Shape {
+    Rectangle {
+        /// Of the rectangle, ahead of the origin.
+        middle: Steps,
+        half_length: Steps,
+        half_width: Steps,
+    },
+    Polygon(Vec<Edge, MAX_VERTICES>),
+    Disc {
+        radius: Steps,
+    },
+}
+
+/// An edge of the polygon.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    from: Vector,
+    along: Bearing,
+    length: Steps,
+}
+
+impl Footprint {
+    /// Whether the robot can be driven with it.
+    ///
+    /// # Errors
+    ///
+    /// A length that is not positive or above 2 m, fewer than three vertices, a polygon that is not convex and
+    /// counter-clockwise around the origin.
+    pub fn check(&self) -> Result<(), ParamError> {
+        let sound = |length: &Metres| {
+            (const { Metres::lit("0.01") }..=const { Metres::lit("2") }).contains(length)
+        };
+        let (ok, field, allowed) = match self {
+            Self::Rectangle {
+                front,
+                rear,
+                half_width,
+            } => (
+                [front, rear, half_width].into_iter().all(sound),
+                "footprint",
+                "front, rear and half width from 0.01 to 2 m",
+            ),
+            Self::Disc { radius } => (sound(radius), "footprint.radius", "0.01 to 2 m"),
+            Self::Polygon(vertices) => (
+                is_convex(vertices),
+                "footprint.polygon",
+                "3 to 8 vertices within 2 m, convex, counter-clockwise around the axle's middle",
+            ),
+        };
+        if ok {
+            Ok(())
+        } else {
+            Err(ParamError { field, allowed })
+        }
+    }
+
+    /// Made ready; the footprint is [checked](Self::check).
+    pub fn outline(&self) -> Outline {
+        match self {
+            Self::Rectangle {
+                front,
+                rear,
+                half_width,
+            } => {
+                let [front, rear, half_width] = [*front, *rear, *half_width].map(Steps::of);
+                let corner = Vector::new(front.max(rear), half_width);
+                let half_length = (front + rear).half();
+                Outline {
+                    shape: Shape::Rectangle {
+                        middle: front - half_length,
+                        half_length,
+                        half_width,
+                    },
+                    front,
+                    rear,
+                    half_width,
+                    reach: corner.norm() + Steps::from_bits(1),
+                }
+            }
+            Self::Disc { radius } => {
+                let radius = Steps::of(*radius);
+                Outline {
+                    shape: Shape::Disc { radius },
+                    front: radius,
+                    rear: radius,
+                    half_width: radius,
+                    reach: radius,
+                }
+            }
+            Self::Polygon(vertices) => polygon(vertices),
+        }
+    }
+}
+
+fn polygon(vertices: &[Point]) -> Outline {
+    let mut edges = Vec::new();
+    let mut outline = Outline {
+        shape: Shape::Disc {
+            radius: Steps::ZERO,
+        },
+        front: Steps::ZERO,
+        rear: Steps::ZERO,
+        half_width: Steps::ZERO,
+        reach: Steps::ZERO,
+    };
+    let mut last = vertices.last().copied().unwrap_or_default();
+    for vertex in vertices {
+        let (from, to) = (Vector::of(last), Vector::of(*vertex));
+        let side = to - from;
+        // There is room: no more edges than vertices.
+        let _ = edges.push(Edge {
+            from,
+            along: Bearing::of(side.direction()),
+            length: side.norm(),
+        });
+        outline.front = outline.front.max(to.x);
+        outline.rear = outline.rear.max(-to.x);
+        outline.half_width = outline.half_width.max(to.y.abs());
+        outline.reach = outline.reach.max(to.norm() + Steps::from_bits(1));
+        last = *vertex;
+    }
+    outline.shape = Shape::Polygon(edges);
+    outline
+}
+
+fn is_convex(vertices: &[Point]) -> bool {
+    let far = |v: &Point| {
+        v.x.abs() > const { Metres::lit("2") } || v.y.abs() > const { Metres::lit("2") }
+    };
+    if vertices.len() < 3 || vertices.iter().any(far) {
+        return false;
+    }
+    let mut turned = 0u64;
+    let ring = || vertices.iter().cycle().copied();
+    for ((a, b), c) in ring()
+        .zip(ring().skip(1))
+        .zip(ring().skip(2))
+        .take(vertices.len())
+    {
+        let (side, next) = (b - a, c - b);
+        let turn = next.direction() - side.direction();
+        // The origin lies to the left of every edge.
+        let within = (Point::default() - a).direction() - side.direction();
+        if side == Point::default() || !turn.is_left() || !within.is_left() {
+            return false;
+        }
+        turned = turned.wrapping_add(turn.bits().unsigned_abs().into());
+    }
+    // Once round, not twice.
+    turned < (3 << 31)
+}
+
+impl Outline {
+    /// Distance of a point to the outline, exact to a step or two; inside below zero, there as far as to the nearest
+    /// edge.
+    pub fn clearance(&self, point: Vector) -> Steps {
+        match &self.shape {
+            Shape::Rectangle {
+                middle,
+                half_length,
+                half_width,
+            } => {
+                let ahead = (point.x - *middle).abs() - *half_length;
+                let beside = point.y.abs() - *half_width;
+                if ahead <= Steps::ZERO || beside <= Steps::ZERO {
+                    ahead.max(beside)
+                } else {
+                    Vector::new(ahead, beside).norm()
+                }
+            }
+            Shape::Disc { radius } => point.norm() - *radius,
+            Shape::Polygon(edges) => clearance_to(edges, point),
+        }
+    }
+}
+
+fn clearance_to(edges: &[Edge], point: Vector) -> Steps {
+    let mut inside = -Steps::MAX;
+    let mut nearest = u32::MAX;
+    for edge in edges {
+        let place = (point - edge.from).in_frame(edge.along);
+        // Counter-clockwise: outside is to the right.
+        let out = -place.y;
+        inside = inside.max(out);
+        if out > Steps::ZERO {
+            let beyond = (place.x - edge.length).max(-place.x).max(Steps::ZERO);
+            nearest = nearest.min(Vector::new(beyond, out).norm_squared());
+        }
+    }
+    if inside > Steps::ZERO {
+        root(nearest)
+    } else {
+        inside
+    }
+}

@@ -1,0 +1,341 @@
+//! Local memory: recent echoes as points, carried along by odometry, so that flanks and the blind rear stay known.
+//!
+//! A cone's echo says "something stands somewhere on this arc". It first fills the arc with points. As the robot turns and
+//! drives, the cones' edges move over the arc: what stands closer than the echo of a cone that surely sees it is disproved,
+//! what agrees with an echo is supported, and an echo that is explained by a point adds no other. So the wrong part of the
+//! arc is carved away and the right part stays. A silent sensor neither disproves nor supports: if it is dead, nothing is
+//! lost.
+//!
+//! Cost: one pass over the points, each in the view of three sensors (of all, if they do not share a place), and at most
+//! five new points a sensor.
+
+use super::footprint::Outline;
+use super::sensors::{Echo, Echoes, Eye, Eyes, View};
+use super::steps::{Bearing, Steps, Vector, retain};
+use crate::geometry::{Point, Pose};
+use crate::integer::proper_fraction;
+use crate::units::{Angle, Metres, MetresPerSecond};
+use fixed::types::I16F16;
+use heapless::Vec;
+
+/// The most points.
+pub const CAPACITY: usize = 208;
+
+/// The memory's settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MemoryParams {
+    /// Echoes farther away than this add no points, unless the speed asks for a farther look.
+    pub insert: Metres,
+    /// Share of a cone's arc that an echo fills, 0 to 1.
+    pub arc: I16F16,
+    /// A point nearer than its cone's echo by more than this is disproved.
+    pub disproof: Metres,
+    /// A point within this of its cone's echo is supported.
+    pub support: Metres,
+    /// An echo nearer than all of its cone's points by more than this is explained by none of them.
+    pub nearer: Metres,
+    /// Whether supported points are drawn half the way to a nearer echo.
+    pub snap: bool,
+    /// Points farther away than this are dropped; at most 3.5 m.
+    pub keep: Metres,
+    /// Ticks without support after which a point is dropped; up to 3200.
+    pub lifetime: u16,
+}
+
+/// A point of the memory.
+#[derive(Clone, Copy, Debug)]
+struct Record {
+    // Steps from the rolling origin.
+    x: i16,
+    y: i16,
+    /// When it was last supported, in units of [`UNIT`] ticks; wraps.
+    seen: u8,
+    confidence: u8,
+}
+
+/// Ticks in a unit of a record's time, as a power of two: 256 units are more than any lifetime.
+const UNIT: u32 = 4;
+
+/// Disproofs that a supported point survives, and one.
+const SURE: u8 = 2;
+
+/// The points, and the place that they are counted from.
+#[derive(Clone, Debug)]
+pub struct Memory {
+    records: Vec<Record, CAPACITY>,
+    origin: Point,
+    tick: u32,
+    /// Of the last update: the body in the frame of the points.
+    body: Vector,
+    forward: Bearing,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Memory {
+    /// Nothing seen yet.
+    pub const fn new() -> Self {
+        Self {
+            records: Vec::new(),
+            origin: Point::new(Metres::ZERO, Metres::ZERO),
+            tick: 0,
+            body: Vector::new(Steps::ZERO, Steps::ZERO),
+            forward: Bearing::AHEAD,
+        }
+    }
+
+    /// Points remembered.
+    pub fn len(&self) -> usize {
+        self.records.len()
+    }
+
+    /// Whether nothing is remembered.
+    pub fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+
+    /// The points, body frame of the last update.
+    pub fn points(&self) -> impl Iterator<Item = Vector> + '_ {
+        self.records.iter().map(|record| self.to_body(record))
+    }
+
+    /// The point with this index in the frame of [`Memory::to_local`].
+    pub(super) fn local(&self, index: usize) -> Option<Vector> {
+        self.records.get(index).map(Record::at)
+    }
+
+    /// A place of the world from the rolling origin; saturates at ±8 m.
+    pub(super) fn to_local(&self, world: Point) -> Vector {
+        Vector::of(world - self.origin)
+    }
+
+    /// A place seen from the rolling origin in the world.
+    pub(super) fn to_world(&self, local: Vector) -> Point {
+        self.origin + local.point()
+    }
+
+    fn to_body(&self, record: &Record) -> Vector {
+        (record.at() - self.body).in_frame(self.forward)
+    }
+
+    /// Takes over a tick's echoes, seen from `pose`.
+    pub fn update<const N: usize>(
+        &mut self,
+        params: &MemoryParams,
+        outline: &Outline,
+        eyes: &Eyes<N>,
+        echoes: &Echoes<N>,
+        pose: Pose,
+        speed: MetresPerSecond,
+    ) {
+        self.tick = self.tick.wrapping_add(1);
+        self.place(pose);
+        let explained = self.judge(params, outline, eyes, echoes);
+        let farthest = insertion_range(params, speed);
+        for (index, (eye, echo)) in (0..32u32).zip(eyes.as_slice().iter().zip(echoes.as_slice())) {
+            let known = explained >> index & 1 == 1;
+            if !known && echo.range().is_some_and(|range| range <= farthest) {
+                self.insert_arc(params, eye, *echo);
+            }
+        }
+    }
+
+    /// Forgets what can be seen again or is far: everything but the near points that no sensor looks at.
+    pub fn forget_doubtful<const N: usize>(&mut self, eyes: &Eyes<N>, outline: &Outline) {
+        const NEAR: Steps = Steps::lit("0.5");
+        let (body, forward) = (self.body, self.forward);
+        retain(&mut self.records, |record| {
+            let place = (record.at() - body).in_frame(forward);
+            let seen = |eye: &Eye| eye.view(place - eye.at) != View::Outside;
+            outline.clearance(place) < NEAR && !eyes.as_slice().iter().any(seen)
+        });
+    }
+
+    /// Moves the origin after the robot, so that sixteen bits stay enough.
+    fn place(&mut self, pose: Pose) {
+        const FAR: Steps = Steps::lit("4");
+        let away = Vector::of(pose.at - self.origin);
+        if away.x.abs() > FAR || away.y.abs() > FAR {
+            // By whole steps, or the points would creep.
+            let moved = if away.x.abs() < Steps::MAX && away.y.abs() < Steps::MAX {
+                retain(&mut self.records, |record| record.shift(away));
+                away.point()
+            } else {
+                self.records.clear();
+                pose.at - self.origin
+            };
+            self.origin = self.origin + moved;
+        }
+        self.body = self.to_local(pose.at);
+        self.forward = Bearing::of(pose.heading);
+    }
+
+    /// Supports, disproves and drops points. Returns the sensors whose echo is explained, a bit each.
+    fn judge<const N: usize>(
+        &mut self,
+        params: &MemoryParams,
+        outline: &Outline,
+        eyes: &Eyes<N>,
+        echoes: &Echoes<N>,
+    ) -> u32 {
+        /// Deeper than this inside the robot a point is wrong: there the robot stands.
+        const DEEP: Steps = Steps::lit("-0.03");
+        let keep = Steps::of(params.keep).squared();
+        let [disproof, support] = [params.disproof, params.support].map(Steps::of);
+        /// What a range's noise may be.
+        const NOISE: Steps = Steps::lit("0.01");
+        let nearer = Steps::of(params.nearer);
+        let snap = params.snap;
+        let lifetime = (params.lifetime >> UNIT) as u8;
+        let now = (self.tick >> UNIT) as u8;
+        let (body, forward) = (self.body, self.forward);
+        let mut explained = 0u32;
+        retain(&mut self.records, |record| {
+            let place = (record.at() - body).in_frame(forward);
+            if place.norm_squared() > keep
+                || now.wrapping_sub(record.seen) > lifetime
+                || outline.clearance(place) < DEEP
+            {
+                return false;
+            }
+            for index in eyes.around(place) {
+                let (Some(eye), Some(echo)) =
+                    (eyes.as_slice().get(index), echoes.as_slice().get(index))
+                else {
+                    continue;
+                };
+                let Some(range) = echo.range() else {
+                    continue;
+                };
+                let from_eye = place - eye.at;
+                let view = eye.view(from_eye);
+                if view == View::Outside {
+                    continue;
+                }
+                let distance = from_eye.norm_squared();
+                let below = |limit: Steps| limit > Steps::ZERO && distance < limit.squared();
+                if view == View::Sure && below(range - disproof) {
+                    record.confidence = record.confidence.saturating_sub(1);
+                    if record.confidence == 0 {
+                        return false;
+                    }
+                } else if below(range + support) && !below(range - support) {
+                    record.confidence = SURE;
+                    record.seen = now;
+                    if below(range + nearer) {
+                        explained |= 1u32.wrapping_shl(index as u32);
+                    }
+                    if snap && !below(range + NOISE) {
+                        let place = eye.at + drawn(from_eye, range);
+                        record.move_to(body + place.turned(forward));
+                    }
+                }
+            }
+            true
+        });
+        explained
+    }
+
+    /// Fills the arc that an echo may come from.
+    fn insert_arc(&mut self, params: &MemoryParams, eye: &Eye, echo: Echo) {
+        let (range, middle, half, count) = match echo {
+            Echo::Silent => return,
+            Echo::At(range, aside) => (range, eye.heading + aside, 0, 1),
+            Echo::Across(range) => {
+                let half = Angle::from_bits(eye.width.bits() >> 1)
+                    .scale(params.arc)
+                    .bits();
+                // Points a tenth of a metre apart over the whole cone's arc, five at most.
+                let width = eye.width.radians().to_bits() >> 2;
+                let arc = range.share(width.clamp(0, 1 << 15));
+                let spaced = const { Steps::lit("0.1") }.bits();
+                let count = arc.bits().wrapping_add(spaced) / spaced;
+                (range, eye.heading, half, count.clamp(1, 5))
+            }
+        };
+        for i in 0..count {
+            // −1, …, 1 of the half arc; 0 for a single point.
+            let numerator = i.wrapping_mul(2).wrapping_sub(count.wrapping_sub(1));
+            let step = half.checked_div(count.wrapping_sub(1)).unwrap_or(0);
+            let direction = middle + Angle::from_bits(step.wrapping_mul(numerator));
+            let place = eye.at + Bearing::of(direction).ahead(range);
+            self.insert(self.body + place.turned(self.forward));
+        }
+    }
+
+    fn insert(&mut self, place: Vector) {
+        let seen = (self.tick >> UNIT) as u8;
+        let Some(record) = Record::new(place, seen) else {
+            return;
+        };
+        if self.records.push(record).is_err() {
+            // Full: the farthest gives way.
+            let body = self.body;
+            let away = |record: &Record| (record.at() - body).norm_squared();
+            if let Some(farthest) = self.records.iter_mut().max_by_key(|r| away(r)) {
+                *farthest = record;
+            }
+        }
+    }
+}
+
+/// A place seen from its sensor, drawn half the way in to `range`.
+fn drawn(from_eye: Vector, range: Steps) -> Vector {
+    let distance = from_eye.norm();
+    let wanted = (distance + range).half();
+    let share = proper_fraction(
+        wanted.min(distance).bits().max(0).unsigned_abs(),
+        distance.bits().max(1).unsigned_abs(),
+    );
+    let share = (share >> 10) as i32;
+    Vector::new(from_eye.x.share(share), from_eye.y.share(share))
+}
+
+/// How far echoes matter at a speed: what reacting and braking take, v/5 + v²/3, and 0.4 m.
+fn insertion_range(params: &MemoryParams, speed: MetresPerSecond) -> Steps {
+    let speed = Steps::of(Metres::from_bits(speed.abs().bits()));
+    let braking = Steps::from_bits((speed.squared() / (3 << 12)) as i32);
+    let fifth = Steps::from_bits(speed.bits() / 5);
+    Steps::of(params.insert).max(const { Steps::lit("0.4") } + fifth + braking)
+}
+
+impl Record {
+    fn new(place: Vector, seen: u8) -> Option<Self> {
+        let narrow = |steps: Steps| i16::try_from(steps.bits()).ok();
+        Some(Self {
+            x: narrow(place.x)?,
+            y: narrow(place.y)?,
+            seen,
+            confidence: SURE,
+        })
+    }
+
+    fn at(&self) -> Vector {
+        Vector::new(
+            Steps::from_bits(self.x.into()),
+            Steps::from_bits(self.y.into()),
+        )
+    }
+
+    fn move_to(&mut self, place: Vector) {
+        if let Some(new) = Self::new(place, self.seen) {
+            (self.x, self.y) = (new.x, new.y);
+        }
+    }
+
+    /// Counted from an origin that moved; whether it still fits.
+    fn shift(&mut self, moved: Vector) -> bool {
+        let place = self.at() - moved;
+        match Self::new(place, self.seen) {
+            Some(new) => {
+                (self.x, self.y) = (new.x, new.y);
+                true
+            }
+            None => false,
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! What stands near the robot in the frame of the predicted body: the list that the geometry of a tick works on.
+
+use super::footprint::Outline;
+use super::steps::{Bearing, Steps, Vector};
+use crate::geometry::{Point, Pose};
+use crate::signals::Twist;
+use crate::units::{Angle, Seconds};
+use heapless::Vec;
+
+/// The most points; if there are more, nearer ones win.
+pub const MAX_NEAR: usize = 128;
+
+/// A point near the robot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    x: i16,
+    y: i16,
+    clearance: i16,
+}
+
+impl Spot {
+    /// Its place, body frame.
+    pub fn at(&self) -> Vector {
+        Vector::new(
+            Steps::from_bits(self.x.into()),
+            Steps::from_bits(self.y.into()),
+        )
+    }
+
+    /// Its distance from the outline.
+    pub fn clearance(&self) -> Steps {
+        Steps::from_bits(self.clearance.into())
+    }
+}
+
+/// The points near the robot.
+#[derive(Clone, Debug, Default)]
+pub struct Near {
+    spots: Vec<Spot, MAX_NEAR>,
+    least: Steps,
+}
+
+impl Near {
+    /// None.
+    pub const fn new() -> Self {
+        Self {
+            spots: Vec::new(),
+            least: Steps::MAX,
+        }
+    }
+
+    /// Of `points`, body frame, those closer than `look` to the middle of a body that has moved by `moved`.
+    pub fn collect(
+        &mut self,
+        points: impl Iterator<Item = Vector>,
+        outline: &Outline,
+        moved: Motion,
+        look: Steps,
+    ) {
+        self.spots.clear();
+        self.least = Steps::MAX;
+        let look = look.squared();
+        for point in points {
+            let place = (point - moved.by).in_frame(moved.turn);
+            if place.norm_squared() >= look {
+                continue;
+            }
+            let clearance = outline.clearance(place);
+            self.least = self.least.min(clearance);
+            // All three are within ±8 m.
+            let narrow = |steps: Steps| steps.bits() as i16;
+            let spot = Spot {
+                x: narrow(place.x),
+                y: narrow(place.y),
+                clearance: narrow(clearance),
+            };
+            if self.spots.push(spot).is_err()
+                && let Some(farthest) = self.spots.iter_mut().max_by_key(|spot| spot.clearance)
+                && farthest.clearance > spot.clearance
+            {
+                *farthest = spot;
+            }
+        }
+    }
+
+    pub(super) fn spots(&self) -> &[Spot] {
+        &self.spots
+    }
+
+    /// Distance of the nearest point from the outline; 8 m if there is none.
+    pub fn clearance(&self) -> Steps {
+        self.least
+    }
+
+    /// How far a straight corridor of this half width is free from the middle of the body, in a direction: to the first
+    /// point in it, `most` at most.
+    pub fn corridor(&self, direction: Bearing, half_width: Steps, most: Steps) -> Steps {
+        let ahead = |spot: &Spot| {
+            let place = spot.at().in_frame(direction);
+            (place.x > Steps::ZERO && place.y.abs() < half_width).then_some(place.x)
+        };
+        self.spots
+            .iter()
+            .filter_map(ahead)
+            .min()
+            .unwrap_or(most)
+            .min(most)
+    }
+}
+
+/// How the body moves until what is decided now takes effect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Motion {
+    /// Where it will be, in its frame of now.
+    pub by: Vector,
+    /// How it will be turned.
+    pub turn: Bearing,
+    /// The same as an angle.
+    pub angle: Angle,
+}
+
+impl Motion {
+    /// Of a twist that is held for some time, along the mean heading.
+    pub fn of(twist: Twist, time: Seconds) -> Self {
+        let angle = twist.angular.over(time);
+        let middle = Angle::from_bits(angle.bits() >> 1);
+        Self {
+            by: Bearing::of(middle).ahead(Steps::of(twist.linear.over(time))),
+            turn: Bearing::of(angle),
+            angle,
+        }
+    }
+
+    /// A pose of the world after the motion.
+    pub fn from(&self, pose: Pose) -> Pose {
+        let by: Point = self.by.point();
+        Pose::new(pose.to_world(by), pose.heading + self.angle)
+    }
+}

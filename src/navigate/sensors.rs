@@ -1,0 +1,319 @@
+//! Range sensors of the navigator: 3 to 32 cones or beams wherever they are mounted, or a lidar's scan that is reduced on
+//! the fly to the nearest echo of each of up to 32 sectors.
+
+use super::steps::{Bearing, Steps, Vector};
+use crate::integer::proper_fraction;
+use crate::params::{Mount, ParamError};
+use crate::ports::{Range, RangeReading};
+use crate::units::{Angle, Metres, MetresPerSecond, Seconds};
+use heapless::Vec;
+
+/// The fewest and the most sensors or sectors.
+pub const SENSORS: core::ops::RangeInclusive<usize> = 3..=32;
+
+/// The sensors' settings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RangeSet<const N: usize> {
+    /// Where each sits and looks, and its full opening angle: at most 90°, 0 for a beam. A lidar's sectors stand here as
+    /// cones from the lidar's place: see [`RangeSet::sectors`].
+    pub mounts: Vec<Mount, N>,
+    /// Echoes from here on are not believed.
+    pub max_range: Metres,
+    /// Readings older than this are not used.
+    pub max_age: Seconds,
+}
+
+impl<const N: usize> RangeSet<N> {
+    /// `N` cones or sectors side by side at `at`, over `field` about straight ahead, each as wide as its share of it.
+    pub fn sectors(
+        at: crate::geometry::Point,
+        field: Angle,
+        max_range: Metres,
+        max_age: Seconds,
+    ) -> Self {
+        // A full turn is the angle 0 here.
+        let whole = match field.bits() {
+            0 => 1u64 << 32,
+            bits => u64::from(bits.cast_unsigned()),
+        };
+        let count = N.max(1) as u64;
+        let width = whole / count;
+        let mut mounts = Vec::new();
+        for i in 0..count {
+            let middle = width
+                .wrapping_mul(i)
+                .wrapping_add(width / 2)
+                .wrapping_sub(whole / 2);
+            let heading = Angle::from_bits(middle as i32);
+            let width = Angle::from_bits(width.min(1 << 30) as i32);
+            // There is room for all.
+            let _ = mounts.push(Mount {
+                pose: crate::geometry::Pose::new(at, heading),
+                width,
+            });
+        }
+        Self {
+            mounts,
+            max_range,
+            max_age,
+        }
+    }
+
+    /// Whether the navigator can use them.
+    ///
+    /// # Errors
+    ///
+    /// The first field that it cannot, and what is allowed.
+    pub fn check(&self) -> Result<(), ParamError> {
+        let near = |m: &Mount| {
+            let at = m.pose.at;
+            at.x.abs() <= const { Metres::lit("2") } && at.y.abs() <= const { Metres::lit("2") }
+        };
+        let narrow = |m: &Mount| (0..=Angle::QUARTER.bits()).contains(&m.width.bits());
+        let checks = [
+            (
+                SENSORS.contains(&self.mounts.len()),
+                "sensors.mounts",
+                "3 to 32 sensors",
+            ),
+            (
+                self.mounts.iter().all(near),
+                "sensors.mounts.pose",
+                "within 2 m of the axle's middle",
+            ),
+            (
+                self.mounts.iter().all(narrow),
+                "sensors.mounts.width",
+                "0 to 90 degrees",
+            ),
+            (
+                (const { Metres::lit("0.2") }..=const { Metres::lit("7.9") })
+                    .contains(&self.max_range),
+                "sensors.max_range",
+                "0.2 to 7.9 m",
+            ),
+            (
+                self.max_age >= Seconds::ZERO,
+                "sensors.max_age",
+                "0 or more",
+            ),
+        ];
+        match checks.into_iter().find(|(ok, ..)| !ok) {
+            Some((_, field, allowed)) => Err(ParamError { field, allowed }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What a sensor or sector says this tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Echo {
+    /// Nothing that could be used: no echo, too old, a fault.
+    Silent,
+    /// An echo at this range, from anywhere across the cone.
+    Across(Steps),
+    /// An echo at this range and this angle from the sensor's axis.
+    At(Steps, Angle),
+}
+
+impl Echo {
+    /// The range, if there is an echo.
+    pub fn range(self) -> Option<Steps> {
+        match self {
+            Self::Silent => None,
+            Self::Across(range) | Self::At(range, _) => Some(range),
+        }
+    }
+}
+
+/// A sensor made ready for a tick's many questions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Eye {
+    pub at: Vector,
+    axis: Bearing,
+    pub heading: Angle,
+    pub width: Angle,
+    /// Tangents of half the width and of 0.9 of that, 14 fractional bits.
+    edge: i32,
+    sure: i32,
+}
+
+/// How a place lies in a sensor's view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum View {
+    /// Outside its cone.
+    Outside,
+    /// At its edge: noise in the heading decides.
+    Edge,
+    /// Inside.
+    Sure,
+}
+
+impl Eye {
+    /// A beam still sees this far to either side: what its own width and the robot's heading leave open.
+    const BEAM: Angle = Angle::deg("1");
+
+    fn new(mount: &Mount) -> Self {
+        let half = Angle::from_bits(mount.width.bits() >> 1).limit(const { Angle::deg("45") });
+        let half = if half.bits() < Self::BEAM.bits() {
+            Self::BEAM
+        } else {
+            half
+        };
+        let sure = Angle::from_bits((i64::from(half.bits()).wrapping_mul(9) / 10) as i32);
+        Self {
+            at: Vector::of(mount.pose.at),
+            axis: Bearing::of(mount.pose.heading),
+            heading: mount.pose.heading,
+            width: mount.width,
+            edge: tangent(half),
+            sure: tangent(sure),
+        }
+    }
+
+    /// How the place, seen from the sensor (body's directions), lies in its cone.
+    pub fn view(&self, from_here: Vector) -> View {
+        let place = from_here.in_frame(self.axis);
+        let beside = place.y.abs();
+        // A tangent is at most one: the product fits.
+        if place.x <= Steps::ZERO || beside > place.x.share(self.edge) {
+            View::Outside
+        } else if beside > place.x.share(self.sure) {
+            View::Edge
+        } else {
+            View::Sure
+        }
+    }
+}
+
+/// Tangent of an angle up to 45°, 14 fractional bits.
+fn tangent(angle: Angle) -> i32 {
+    let (cos, sin) = angle.cos_sin();
+    let [cos, sin] = [cos, sin].map(|c| c.to_bits().unsigned_abs());
+    (proper_fraction(sin, cos) >> 10) as i32
+}
+
+/// The sensors made ready.
+#[derive(Clone, Debug)]
+pub struct Eyes<const N: usize> {
+    eyes: Vec<Eye, N>,
+    /// They all sit in one place: a place's direction tells whose cone it is in.
+    shared: bool,
+    /// Then: the sensor whose axis is nearest to the middle of each 64th of a turn.
+    nearest: [u8; 64],
+    max_range: Steps,
+    max_age: Seconds,
+}
+
+impl<const N: usize> Eyes<N> {
+    pub(super) fn new(set: &RangeSet<N>) -> Self {
+        let mut eyes: Vec<Eye, N> = Vec::new();
+        for mount in &set.mounts {
+            // There is room: as many as mounts.
+            let _ = eyes.push(Eye::new(mount));
+        }
+        let first = eyes.first().map_or(Vector::default(), |eye| eye.at);
+        let shared = eyes.iter().all(|eye| eye.at == first);
+        let mut nearest = [0; 64];
+        for (sector, entry) in (0..64i32).zip(&mut nearest) {
+            let middle = Angle::from_bits((sector << 26).wrapping_add(1 << 25));
+            let off = |eye: &Eye| (eye.heading - middle).abs().bits();
+            let best = (0..32u8).zip(&eyes).min_by_key(|(_, eye)| off(eye));
+            *entry = best.map_or(0, |(index, _)| index);
+        }
+        Self {
+            eyes,
+            shared,
+            nearest,
+            max_range: Steps::of(set.max_range),
+            max_age: set.max_age,
+        }
+    }
+
+    pub(super) fn as_slice(&self) -> &[Eye] {
+        &self.eyes
+    }
+
+    /// The sensors in whose cone a place, body frame, may be: three where they share a place, else all.
+    pub(super) fn around(&self, place: Vector) -> core::ops::Range<usize> {
+        let Some(eye) = self.eyes.first().filter(|_| self.shared) else {
+            return 0..self.eyes.len();
+        };
+        let direction = (place - eye.at).direction();
+        let sector = (direction.bits().cast_unsigned() >> 26) as usize;
+        let nearest = usize::from(self.nearest.get(sector).copied().unwrap_or(0));
+        nearest.saturating_sub(1)..nearest.saturating_add(2).min(self.eyes.len())
+    }
+}
+
+/// The echoes of one tick.
+#[derive(Clone, Debug)]
+pub struct Echoes<const N: usize> {
+    echoes: [Echo; N],
+}
+
+impl<const N: usize> Default for Echoes<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize> Echoes<N> {
+    /// All sensors silent.
+    pub const fn new() -> Self {
+        Self {
+            echoes: [Echo::Silent; N],
+        }
+    }
+
+    pub(super) fn as_slice(&self) -> &[Echo] {
+        &self.echoes
+    }
+
+    /// Takes over the readings of single sensors, in the order of their mounts; what is missing is silent. A reading
+    /// that is `age` old is taken nearer by `speed · age`, the worst that the robot's own motion can have done.
+    pub fn take(&mut self, eyes: &Eyes<N>, readings: &[RangeReading], speed: MetresPerSecond) {
+        self.echoes = [Echo::Silent; N];
+        for (echo, (reading, eye)) in self.echoes.iter_mut().zip(readings.iter().zip(&eyes.eyes)) {
+            let Range::Echo(distance) = reading.range else {
+                continue;
+            };
+            if reading.age > eyes.max_age || distance < Metres::ZERO {
+                continue;
+            }
+            let moved = speed.abs().over(reading.age.max(Seconds::ZERO));
+            let range = Steps::of((distance - moved).max(Metres::ZERO));
+            if range < eyes.max_range {
+                *echo = match eye.width {
+                    Angle::ZERO => Echo::At(range, Angle::ZERO),
+                    _ => Echo::Across(range),
+                };
+            }
+        }
+    }
+
+    /// Takes over a lidar's scan, beam after beam: its direction from the first mount's place, body frame, and its range.
+    /// Of each sector the nearest stays; beams outside all sectors and ranges of 0 or less (no return) are left out.
+    pub fn reduce(&mut self, eyes: &Eyes<N>, beams: impl IntoIterator<Item = (Angle, Metres)>) {
+        self.echoes = [Echo::Silent; N];
+        for (direction, distance) in beams {
+            let range = Steps::of(distance);
+            if range <= Steps::ZERO || range >= eyes.max_range {
+                continue;
+            }
+            let sector = (direction.bits().cast_unsigned() >> 26) as usize;
+            let nearest = usize::from(eyes.nearest.get(sector).copied().unwrap_or(0));
+            for index in nearest.saturating_sub(1)..nearest.saturating_add(2) {
+                let (Some(eye), Some(echo)) = (eyes.eyes.get(index), self.echoes.get_mut(index))
+                else {
+                    continue;
+                };
+                let aside = direction - eye.heading;
+                let within = aside.abs().bits() <= eye.width.bits() >> 1;
+                if within && echo.range().is_none_or(|known| range < known) {
+                    *echo = Echo::At(range, aside);
+                }
+            }
+        }
+    }
+}

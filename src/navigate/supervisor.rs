@@ -1,0 +1,222 @@
+//! The navigator's higher level: which manoeuvre runs, and when to admit that none leads on.
+
+use crate::geometry::{Point, square};
+use crate::signals::Twist;
+use crate::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds};
+
+/// What the navigator does.
+///
+/// ```text
+///               the path ahead is not free
+///   ┌────────┐ ────────────────────────────▶ ┌───────┐  no admissible heading, ┌────────┐
+///   │ Follow │                               │ Avoid │ ──────────────────────▶ │ Escape │
+///   └────────┘ ◀──────────────────────────── └───────┘ ◀────────────────────── └────────┘
+///        │       free again, after a dwell      │  ▲     moved away, or tried long enough
+///        │                                      │  │ resume
+///        │ at the goal                          ▼  │
+///        ▼                  no progress   ┌─────────┐
+///   ┌─────────┐             for long      │ Blocked │
+///   │ Arrived │                           └─────────┘
+///   └─────────┘
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Manoeuvre {
+    /// On the path, by the fine tables.
+    Follow,
+    /// Among obstacles, by map, guide field and coarse tables.
+    #[default]
+    Avoid,
+    /// Out of a place where nothing is admissible: back, or turning.
+    Escape,
+    /// Stands and says so: there is no way on. For a pause at first, then it tries again; in the end for good, until
+    /// [`Navigator::resume`](super::Navigator::resume).
+    Blocked,
+    /// Stands at the goal.
+    Arrived,
+}
+
+/// Thresholds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupervisorParams {
+    /// Length of path that must be free to follow it, at rest…
+    pub enter: Metres,
+    /// …and this long a way more.
+    pub enter_time: Seconds,
+    /// Distance to the outline that the path must leave.
+    pub path_margin: Metres,
+    /// Distance to the outline below which following ends.
+    pub leave: Metres,
+    /// Least ticks of avoiding.
+    pub dwell: u16,
+    /// Ticks without an admissible heading before an escape.
+    pub stuck: u16,
+    /// Ticks of standing before an escape.
+    pub still: u16,
+    /// Way after which an escape may end…
+    pub escape: Metres,
+    /// …and ticks after which it does.
+    pub escape_ticks: u16,
+    /// Who is not this far from where he was…
+    pub progress: Metres,
+    /// …after this many ticks makes no progress: it stops, says so, and forgets doubtful points.
+    pub patience: u16,
+    /// Ticks of standing before it tries again.
+    pub pause: u16,
+    /// That often in a row, and the robot is blocked for good.
+    pub strikes: u8,
+    /// Who comes no nearer to the goal by `progress` for this many ticks is blocked for good.
+    pub give_up: u16,
+    /// The goal is reached within this distance.
+    pub arrival: Metres,
+}
+
+/// What a decision is made from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Situation {
+    /// The path ahead can be followed; never without a path.
+    pub path_free: bool,
+    /// The path can be followed with room to spare.
+    pub path_clear: bool,
+    /// There is an admissible heading.
+    pub admissible: bool,
+    /// The last command.
+    pub last: Twist,
+    /// Where the robot is.
+    pub at: Point,
+    /// Way to go to the goal.
+    pub to_go: Metres,
+    /// The goal is reached.
+    pub at_goal: bool,
+}
+
+/// What was decided.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Decided {
+    /// What to do.
+    pub manoeuvre: Manoeuvre,
+    /// Doubtful points are to be forgotten: the robot made no progress.
+    pub forget: bool,
+    /// The way that was tried is to be shunned: it led nowhere.
+    pub shun: bool,
+}
+
+/// What the higher level remembers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    manoeuvre: Manoeuvre,
+    dwelt: u16,
+    stuck: u16,
+    still: u16,
+    /// Where the escape began.
+    from: Point,
+    anchor: Point,
+    anchored: u16,
+    strikes: u8,
+    least: Metres,
+    since_least: u16,
+}
+
+impl State {
+    pub const fn new() -> Self {
+        Self {
+            manoeuvre: Manoeuvre::Avoid,
+            dwelt: 0,
+            stuck: 0,
+            still: 0,
+            from: Point::new(Metres::ZERO, Metres::ZERO),
+            anchor: Point::new(Metres::ZERO, Metres::ZERO),
+            anchored: 0,
+            strikes: 0,
+            least: Metres::MAX,
+            since_least: 0,
+        }
+    }
+
+    /// The manoeuvre of this tick, and what it means for what is remembered.
+    pub fn decide(&mut self, params: &SupervisorParams, now: &Situation) -> Decided {
+        let given_up = self.strikes >= params.strikes || self.since_least >= params.give_up;
+        if self.manoeuvre == Manoeuvre::Blocked && (given_up || self.dwelt < params.pause) {
+            self.dwelt = self.dwelt.saturating_add(1);
+            return Decided {
+                manoeuvre: Manoeuvre::Blocked,
+                ..Decided::default()
+            };
+        }
+        let forget = self.watch(params, now);
+        let next = if now.at_goal {
+            Manoeuvre::Arrived
+        } else if forget || self.since_least >= params.give_up {
+            Manoeuvre::Blocked
+        } else {
+            self.next(params, now)
+        };
+        let begins = next != self.manoeuvre;
+        if begins {
+            self.manoeuvre = next;
+            self.dwelt = 0;
+            self.stuck = 0;
+            self.still = 0;
+            self.from = now.at;
+        }
+        self.dwelt = self.dwelt.saturating_add(1);
+        Decided {
+            manoeuvre: next,
+            forget,
+            shun: forget || (begins && next == Manoeuvre::Escape),
+        }
+    }
+
+    fn next(&mut self, params: &SupervisorParams, now: &Situation) -> Manoeuvre {
+        let count = |ticks: u16, on: bool| if on { ticks.saturating_add(1) } else { 0 };
+        self.stuck = count(self.stuck, !now.admissible);
+        self.still = count(self.still, stands(now.last));
+        let moved = |from: Point, by: Metres| (now.at - from).norm_squared() > square(by);
+        match self.manoeuvre {
+            Manoeuvre::Follow if now.path_free && self.still < params.still => Manoeuvre::Follow,
+            Manoeuvre::Avoid if self.stuck >= params.stuck || self.still >= params.still => {
+                Manoeuvre::Escape
+            }
+            Manoeuvre::Avoid if now.path_clear && self.dwelt >= params.dwell => Manoeuvre::Follow,
+            Manoeuvre::Escape => {
+                let out = now.admissible && moved(self.from, params.escape);
+                if out || self.dwelt >= params.escape_ticks {
+                    Manoeuvre::Avoid
+                } else {
+                    Manoeuvre::Escape
+                }
+            }
+            _ => Manoeuvre::Avoid,
+        }
+    }
+
+    /// The progress watchdog.
+    fn watch(&mut self, params: &SupervisorParams, now: &Situation) -> bool {
+        if now.to_go < self.least - params.progress || self.least == Metres::MAX {
+            self.least = now.to_go;
+            self.since_least = 0;
+        }
+        self.since_least = self.since_least.saturating_add(1);
+        let away = (now.at - self.anchor).norm_squared() > square(params.progress);
+        if away || self.anchored == 0 {
+            self.anchor = now.at;
+            self.anchored = 1;
+            self.strikes = 0;
+            return false;
+        }
+        self.anchored = self.anchored.saturating_add(1);
+        if self.anchored <= params.patience {
+            return false;
+        }
+        self.anchored = 1;
+        self.strikes = self.strikes.saturating_add(1);
+        true
+    }
+}
+
+/// Whether a command hardly moves the robot.
+fn stands(twist: Twist) -> bool {
+    const SLOW: MetresPerSecond = MetresPerSecond::lit("0.04");
+    const TURN: RadiansPerSecond = RadiansPerSecond::lit("0.15");
+    twist.linear.abs() < SLOW && twist.angular.abs() < TURN
+}

@@ -1,0 +1,251 @@
+//! Motions of the body in small steps, and how far they stay clear of the points near it.
+//!
+//! A point's clearance changes by no more in a step than the body's farthest point moves. So where there is room, steps
+//! are skipped, and few points are looked at more than twice.
+
+use super::footprint::Outline;
+use super::near::Near;
+use super::steps::{Bearing, Steps, Vector};
+use crate::integer::{quotient, ratio, saturate};
+use crate::signals::Twist;
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond, Seconds};
+use heapless::Vec;
+
+/// The most steps of a trajectory.
+pub const MAX_STEPS: usize = 40;
+
+/// A pose of the body, in its frame of the beginning.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    at: Vector,
+    turn: Bearing,
+}
+
+/// Poses one after the other.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    poses: Vec<Placed, MAX_STEPS>,
+    at: Vector,
+    heading: Angle,
+    /// The longest step, and the largest turn in one.
+    advance: Steps,
+    turn: Angle,
+}
+
+/// Where a trajectory meets a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Contact {
+    /// Whole steps before it.
+    pub step: usize,
+    /// The part of the next step before it, 8 fractional bits.
+    pub part: i32,
+}
+
+impl Trajectory {
+    /// Standing still.
+    pub const fn new() -> Self {
+        Self {
+            poses: Vec::new(),
+            at: Vector::new(Steps::ZERO, Steps::ZERO),
+            heading: Angle::ZERO,
+            advance: Steps::ZERO,
+            turn: Angle::ZERO,
+        }
+    }
+
+    /// Length of a step of [`Trajectory::arc`]: 5/128 m.
+    pub const STEP: Steps = Steps::from_bits(160);
+
+    /// `length` metres along an arc, forward or backward, in steps of [`Trajectory::STEP`].
+    pub fn arc(curvature: PerMetre, backward: bool, length: Steps) -> Self {
+        let mut trajectory = Self::new();
+        let step = if backward { -Self::STEP } else { Self::STEP };
+        let turn = Angle::from_radians(curvature.get().saturating_mul(
+            fixed::types::I16F16::from_bits(step.bits().wrapping_mul(16)),
+        ));
+        for _ in 0..MAX_STEPS {
+            if Self::STEP
+                .bits()
+                .wrapping_mul(trajectory.poses.len() as i32)
+                >= length.bits()
+            {
+                break;
+            }
+            trajectory.go(step, turn);
+        }
+        trajectory
+    }
+
+    /// A period in which the twist goes from `driven` to `twist`, then both parts braked to rest, a step a period. What has
+    /// not come to rest after [`MAX_STEPS`] ends there.
+    pub fn braked(driven: Twist, twist: Twist, brakes: Brakes) -> Self {
+        let mut trajectory = Self::new();
+        let (mut before, mut now) = (driven, twist);
+        for _ in 0..MAX_STEPS {
+            let mean = brakes.mean(before, now);
+            if mean == Twist::REST && now == Twist::REST {
+                break;
+            }
+            let way = Steps::of(mean.linear.over(brakes.period));
+            trajectory.go(way, mean.angular.over(brakes.period));
+            (before, now) = (now, brakes.applied(now));
+        }
+        trajectory
+    }
+
+    fn go(&mut self, way: Steps, turn: Angle) {
+        let middle = self.heading + Angle::from_bits(turn.bits() >> 1);
+        self.at = self.at + Bearing::of(middle).ahead(way);
+        self.heading = self.heading + turn;
+        self.advance = self.advance.max(way.abs());
+        if turn.abs().bits() > self.turn.bits() {
+            self.turn = turn.abs();
+        }
+        // The callers' loops end before it is full.
+        let _ = self.poses.push(Placed {
+            at: self.at,
+            turn: Bearing::of(self.heading),
+        });
+    }
+
+    /// Where it ends.
+    pub fn end(&self) -> Vector {
+        self.at
+    }
+
+    /// Steps.
+    pub fn len(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// Whether it stands still.
+    pub fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// The first place where a point comes closer to the outline than `margin` while it comes closer still. A point that
+    /// is too close already and recedes does not count: else the robot could never leave it.
+    pub(super) fn contact(&self, near: &Near, outline: &Outline, margin: Steps) -> Option<Contact> {
+        // What the farthest point of the body moves in a step, rounded up.
+        let turn = self.turn.radians().to_bits() >> 2;
+        let swept = outline.reach.bits().wrapping_mul(turn.min(1 << 15)) >> 14;
+        let pace = self.advance.bits().wrapping_add(swept).wrapping_add(2);
+        let skipped = |room: Steps| room.bits().max(0).checked_div(pace).unwrap_or(0) as usize;
+        let mut first = None::<Contact>;
+        let mut end = self.poses.len();
+        for spot in near.spots() {
+            let mut before = spot.clearance();
+            let mut step = skipped(before - margin);
+            let mut adjacent = step == 0;
+            while step < end {
+                let Some(pose) = self.poses.get(step) else {
+                    break;
+                };
+                let here = outline.clearance((spot.at() - pose.at).in_frame(pose.turn));
+                if here < margin && here < before {
+                    let room = (before - margin).bits().max(0) << 8;
+                    let part = room.checked_div((before - here).bits()).unwrap_or(0);
+                    // Where steps were skipped, `before` says nothing of this one.
+                    let part = if adjacent { part.clamp(0, 1 << 8) } else { 0 };
+                    first = Some(Contact { step, part });
+                    end = step;
+                    break;
+                }
+                before = here;
+                let more = skipped(here - margin);
+                adjacent = more == 0;
+                step = step.saturating_add(1).saturating_add(more);
+            }
+        }
+        first
+    }
+
+    /// How far along an [arc](Self::arc) the robot stays clear: all of it at most.
+    pub(super) fn free(&self, near: &Near, outline: &Outline, margin: Steps) -> Steps {
+        let (steps, part) = match self.contact(near, outline, margin) {
+            Some(contact) => (contact.step as i32, contact.part),
+            None => (self.poses.len() as i32, 0),
+        };
+        let step = Self::STEP.bits();
+        Steps::from_bits(
+            step.wrapping_mul(steps)
+                .wrapping_add(step.wrapping_mul(part) >> 8),
+        )
+    }
+}
+
+impl Default for Trajectory {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What both parts of a twist can lose in a period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Brakes {
+    /// The period.
+    pub period: Seconds,
+    /// Speed lost in it.
+    pub linear: MetresPerSecond,
+    /// Yaw rate lost in it.
+    pub angular: RadiansPerSecond,
+}
+
+impl Brakes {
+    /// The twist after a period of full braking.
+    pub fn applied(&self, twist: Twist) -> Twist {
+        Twist {
+            linear: twist.linear - twist.linear.limit(self.linear),
+            angular: twist.angular - twist.angular.limit(self.angular),
+        }
+    }
+
+    /// The mean twist of a period in which the twist goes from one to another as fast as it can, and then holds it:
+    /// to − Δ·|Δ|/2b, Δ being the change and b the most that a period can change.
+    pub fn mean(&self, from: Twist, to: Twist) -> Twist {
+        let mean = |from: i32, to: i32, most: i32| {
+            let change = to.saturating_sub(from).min(most).max(most.saturating_neg());
+            to.saturating_sub(ratio(change, change.saturating_abs() >> 1, most))
+        };
+        Twist {
+            linear: MetresPerSecond::from_bits(mean(
+                from.linear.bits(),
+                to.linear.bits(),
+                self.linear.bits(),
+            )),
+            angular: RadiansPerSecond::from_bits(mean(
+                from.angular.bits(),
+                to.angular.bits(),
+                self.angular.bits(),
+            )),
+        }
+    }
+
+    /// From one twist towards another, as far as a period allows.
+    pub fn toward(&self, from: Twist, to: Twist) -> Twist {
+        Twist {
+            linear: from.linear + (to.linear - from.linear).limit(self.linear),
+            angular: from.angular + (to.angular - from.angular).limit(self.angular),
+        }
+    }
+}
+
+/// Curvature of a twist, limited to ±`most`; that of turning in place is the limit.
+pub(super) fn curvature(twist: Twist, most: PerMetre) -> PerMetre {
+    let speed = twist.linear.abs().max(MetresPerSecond::from_bits(1));
+    let wide = i64::from(twist.angular.bits()) << 16;
+    let exact = quotient(wide, speed.bits()).map_or(0, saturate);
+    let exact = PerMetre::from_bits(exact);
+    // Driving backward the path bends the other way.
+    let signed = if twist.linear < MetresPerSecond::ZERO {
+        -exact
+    } else {
+        exact
+    };
+    signed.limit(most)
+}
+
+/// A length as a plain quantity of another unit with the same fractional bits.
+pub(super) fn as_metres(speed: MetresPerSecond) -> Metres {
+    Metres::from_bits(speed.bits())
+}

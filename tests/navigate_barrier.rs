@@ -1,0 +1,207 @@
+//! The last barrier's promise, as a property: under the assumptions that its documentation states, whatever is wanted, no
+//! known point is ever touched.
+
+use fixed::types::{I8F24, I16F16};
+use fuzzypilot::geometry::Point;
+use fuzzypilot::navigate::{
+    BarrierParams, Brakes, Footprint, Guarded, Motion, Near, Steps, Vector, gate,
+};
+use fuzzypilot::signals::Twist;
+use fuzzypilot::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds};
+use proptest::prelude::*;
+
+const PERIOD: f64 = 0.05;
+/// Body of the test: half length and half width.
+const HALF: [f64; 2] = [0.254, 0.215];
+const GATE: f64 = 0.015;
+
+fn number(x: f64) -> I16F16 {
+    I16F16::from_num(x)
+}
+
+fn twist([v, w]: [f64; 2]) -> Twist {
+    Twist {
+        linear: MetresPerSecond::new(number(v)),
+        angular: RadiansPerSecond::new(number(w)),
+    }
+}
+
+fn plain(twist: Twist) -> [f64; 2] {
+    [twist.linear.bits(), twist.angular.bits()].map(|bits| f64::from(bits) / 65_536.0)
+}
+
+fn brakes() -> Brakes {
+    Brakes {
+        period: Seconds::new(I8F24::from_num(PERIOD)),
+        linear: MetresPerSecond::new(number(2.5 * PERIOD)),
+        angular: RadiansPerSecond::new(number(8.0 * PERIOD)),
+    }
+}
+
+fn clearance([x, y]: [f64; 2]) -> f64 {
+    let (a, b) = (x.abs() - HALF[0], y.abs() - HALF[1]);
+    if a > 0.0 && b > 0.0 {
+        a.hypot(b)
+    } else {
+        a.max(b)
+    }
+}
+
+/// The robot of the assumptions: a command acts a period after it was given, under the acceleration limits.
+struct Robot {
+    pose: [f64; 3],
+    twist: [f64; 2],
+    last: [f64; 2],
+}
+
+impl Robot {
+    fn to_body(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (dx, dy) = (x - self.pose[0], y - self.pose[1]);
+        let (sin, cos) = self.pose[2].sin_cos();
+        [dx * cos + dy * sin, dy * cos - dx * sin]
+    }
+
+    /// A period in which the last command acts; the least clearance on the way.
+    fn go(&mut self, command: [f64; 2], points: &[[f64; 2]]) -> f64 {
+        let dt = PERIOD / 10.0;
+        let mut least = f64::INFINITY;
+        for _ in 0..10 {
+            let before = self.twist;
+            for (now, (to, rate)) in self
+                .twist
+                .iter_mut()
+                .zip(self.last.into_iter().zip([2.5, 8.0]))
+            {
+                *now += (to - *now).clamp(-rate * dt, rate * dt);
+            }
+            let [v, w] = [0, 1].map(|k| (before[k] + self.twist[k]) / 2.0);
+            let heading = self.pose[2] + w * dt / 2.0;
+            self.pose[0] += v * dt * heading.cos();
+            self.pose[1] += v * dt * heading.sin();
+            self.pose[2] += w * dt;
+            let near = points.iter().map(|p| clearance(self.to_body(*p)));
+            least = near.fold(least, f64::min);
+        }
+        self.last = command;
+        least
+    }
+}
+
+fn guarded(robot: &Robot, before: [f64; 2], points: &[[f64; 2]], wanted: [f64; 2]) -> Guarded {
+    let outline = Footprint::Rectangle {
+        front: Metres::new(number(HALF[0])),
+        rear: Metres::new(number(HALF[0])),
+        half_width: Metres::new(number(HALF[1])),
+    }
+    .outline();
+    let params = BarrierParams {
+        margin: Metres::new(number(0.02)),
+        braking: number(1.0),
+        share: number(0.9),
+        gate: Metres::new(number(GATE)),
+    };
+    let vector = |p: &[f64; 2]| {
+        let [x, y] = robot.to_body(*p);
+        Vector::of(Point::new(Metres::new(number(x)), Metres::new(number(y))))
+    };
+    let driven = twist(robot.last);
+    let moved = Motion::of(brakes().mean(twist(before), driven), brakes().period);
+    let mut near = Near::new();
+    near.collect(points.iter().map(vector), &outline, moved, Steps::lit("2"));
+    let stepped = brakes().toward(driven, twist(wanted));
+    gate(&params, &near, &outline, brakes(), driven, stepped)
+}
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(config(300))]
+
+    /// A reckless driver among random points.
+    #[test]
+    fn whatever_is_wanted_no_known_point_is_touched(
+        points in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 1..30),
+        wants in prop::collection::vec((-0.3..2.0f64, -3.0..3.0f64), 1..12),
+    ) {
+        let points: Vec<[f64; 2]> = points
+            .into_iter()
+            .map(|(x, y)| [x, y])
+            .filter(|p| clearance(*p) > GATE + 0.002)
+            .collect();
+        let mut robot = Robot { pose: [0.0; 3], twist: [0.0; 2], last: [0.0; 2] };
+        let mut before = [0.0; 2];
+        for tick in 0..100 {
+            let (v, w) = wants[tick / 10 % wants.len()];
+            let passed = guarded(&robot, before, &points, [v, w]);
+            before = robot.last;
+            let least = robot.go(plain(passed.twist), &points);
+            prop_assert!(least > 0.0, "touched at tick {tick}: {least}, {passed:?}");
+        }
+    }
+}
+
+/// The property can fail: without the gate the same driver runs into the first wall.
+#[test]
+fn without_the_gate_it_is_touched() {
+    let wall: Vec<[f64; 2]> = (-10..=10).map(|i| [1.5, f64::from(i) * 0.1]).collect();
+    let drive = |gated: bool| {
+        let mut robot = Robot {
+            pose: [0.0; 3],
+            twist: [0.0; 2],
+            last: [0.0; 2],
+        };
+        let (mut before, mut least) = ([0.0; 2], f64::INFINITY);
+        for _ in 0..100 {
+            let wanted = [2.0, 0.0];
+            let passed = guarded(&robot, before, &wall, wanted);
+            before = robot.last;
+            let command = if gated { plain(passed.twist) } else { wanted };
+            least = robot.go(command, &wall).min(least);
+        }
+        (least, robot.pose[0])
+    };
+    let (least, _) = drive(false);
+    assert!(least < 0.0);
+    let (least, x) = drive(true);
+    assert!(least > 0.0, "{least}");
+    // It stops close before the wall, not far from it.
+    assert!(x > 1.5 - HALF[0] - 0.1, "{x}");
+}
+
+/// A point that is too close already does not hold a robot that leaves it.
+#[test]
+fn a_robot_may_leave_what_it_touches() {
+    let robot = Robot {
+        pose: [0.0; 3],
+        twist: [0.0; 2],
+        last: [0.0; 2],
+    };
+    let touching = [[HALF[0] + 0.005, 0.0]];
+    let back = guarded(&robot, [0.0; 2], &touching, [-0.3, 0.0]);
+    assert!(!back.gated && back.twist.linear < MetresPerSecond::ZERO);
+    let on = guarded(&robot, [0.0; 2], &touching, [0.3, 0.0]);
+    assert!(on.gated && on.twist.linear <= MetresPerSecond::ZERO);
+}
+
+/// Whatever the format can express comes to an end.
+#[test]
+fn extreme_twists_end() {
+    let robot = Robot {
+        pose: [0.0; 3],
+        twist: [0.0; 2],
+        last: [30_000.0, -30_000.0],
+    };
+    let passed = guarded(
+        &robot,
+        [-30_000.0, 30_000.0],
+        &[[1.0, 0.0]],
+        [30_000.0, 30_000.0],
+    );
+    assert!(passed.twist.linear <= MetresPerSecond::MAX);
+}
