@@ -541,7 +541,8 @@ impl Panel {
         }
         let lines: Vec<&str> = self.y_name.lines().collect();
         for (index, line) in lines.iter().enumerate() {
-            let left = self.rect.left - 60.0 - 16.0 * (lines.len() - 1 - index) as f64;
+            let clear = (axis::widest(&self.y_ticks, 12.5) + 20.0).max(60.0);
+            let left = self.rect.left - clear - 16.0 * (lines.len() - 1 - index) as f64;
             canvas.text(line, (left, up), 14.0, INK, UPWARD)?;
         }
         Ok(())
