@@ -220,7 +220,7 @@ fn a_design_of_matlabs_is_tuned_and_written_where_its_centroid_can_be_said() {
     let data = fs::read_to_string(here.join("data.csv")).unwrap();
     let data = data.replace("tip (fixed)", "fixed");
     fs::write(here.join("data.csv"), data).unwrap();
-    let args = "tipper.fis --data data.csv --ignore fixed --evaluations 150 --out tuned";
+    let args = "tipper.fis --data data.csv --ignore fixed --only tip --evaluations 200 --out tuned";
     refused(
         here,
         tune(here, args),
