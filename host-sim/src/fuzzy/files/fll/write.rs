@@ -110,7 +110,7 @@ fn line(text: &mut String, indent: &str, key: &str, value: &str) {
 
 /// A description, if there is one, as a line can hold it.
 fn description(text: &mut String, description: &str) {
-    let plain = description.replace(|c: char| c == '#' || c.is_control(), " ");
+    let plain = description.replace(|c: char| c == '#' || (c.is_control() && c != '\t'), " ");
     if !plain.trim().is_empty() {
         line(text, "  ", "description", plain.trim());
     }
