@@ -190,6 +190,80 @@ fn numbers_are_told_as_far_as_they_matter() {
     );
 }
 
+/// A text of a picture: what it says, and about where it stands, in the picture's own units.
+#[derive(Debug)]
+struct Text {
+    says: String,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Text {
+    fn overlaps(&self, other: &Self) -> bool {
+        let apart = |a: [f64; 2], b: [f64; 2]| a[1] <= b[0] || b[1] <= a[0];
+        !apart(self.x, other.x) && !apart(self.y, other.y)
+    }
+}
+
+fn texts(svg: &str) -> Vec<Text> {
+    let read = |part: &str| {
+        let (head, rest) = part.split_once('>').unwrap();
+        let says = rest.split("</text>").next().unwrap().trim().to_owned();
+        let word = |name: &str| {
+            let (_, rest) = head.split_once(&format!(" {name}=\"")).unwrap();
+            rest.split('"').next().unwrap()
+        };
+        let number = |name: &str| word(name).parse::<f64>().unwrap();
+        let size = number("font-size");
+        // As wide as the face's digits.
+        let width = 0.55 * size * says.chars().count() as f64;
+        // Its top stands at y, or its middle.
+        let below = if word("dy") == "0.76em" {
+            0.4 * size
+        } else {
+            0.0
+        };
+        let [x, y] = [number("x"), number("y") + below];
+        let half = |middle: f64, of: f64| [middle - of / 2.0, middle + of / 2.0];
+        let (x, y) = match (head.contains("rotate"), word("text-anchor")) {
+            (true, _) => (half(x, 0.7 * size), half(y, width)),
+            (false, "middle") => (half(x, width), half(y, 0.7 * size)),
+            (false, "end") => ([x - width, x], half(y, 0.7 * size)),
+            (false, _) => ([x, x + width], half(y, 0.7 * size)),
+        };
+        Text { says, x, y }
+    };
+    svg.split("<text").skip(1).map(read).collect()
+}
+
+#[test]
+fn long_numbers_in_pictures_stand_clear_of_each_other_and_of_the_edge() {
+    let input = FAR.find("InputVariable").unwrap();
+    let output = FAR.find("OutputVariable").unwrap();
+    let second = FAR[input..output].replace("Größe", "second");
+    let text = FAR.replace("Linear 1 0.5", "Linear 0.5 0.5 0");
+    let dir = with(&text.replace("OutputVariable", &format!("{second}OutputVariable")));
+    done(dir.path(), &["surface", "design.fll", "--out", "."]);
+    for (file, least) in [("design-out.svg", 20), ("design-memberships.svg", 30)] {
+        let svg = fs::read_to_string(dir.path().join(file)).unwrap();
+        let texts = texts(&svg);
+        let numbers: Vec<&Text> = texts
+            .iter()
+            .filter(|text| text.says.starts_with("100000"))
+            .collect();
+        assert!(numbers.len() >= least, "{file}: {}", numbers.len());
+        for (index, text) in numbers.iter().enumerate() {
+            // The picture is 1200 pixels wide, eight units each.
+            assert!(text.x[0] >= 0.0 && text.x[1] <= 9600.0, "{file}: {text:?}");
+            let others = numbers[index + 1..].iter().copied();
+            let names = texts.iter().filter(|text| !text.says.starts_with("100000"));
+            for other in others.chain(names) {
+                assert!(!text.overlaps(other), "{file}: {text:?} and {other:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn where_no_rule_fires_it_says_so() {
     let dir = with(BOILER);

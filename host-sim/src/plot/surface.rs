@@ -78,17 +78,19 @@ pub fn surface_svg(spec: &SurfaceSpec) -> Result<String> {
         )?;
         let note = fitted(&spec.note, 14.0, WIDTH - 110.0);
         canvas.text(&note, (82.0, 54.0), 14.0, MUTED, FROM_LEFT)?;
-        // What long numbers beside the map and beside the colour bar take, the surface in space gives.
+        // What long numbers beside the map, beside the colour bar and on the floor take, the surface in space gives.
         let beside_map = (widest(&spec.rows.ticks(7.0), 12.5) - 42.0).max(0.0);
         let beside_bar = (widest(&levels(&range), 12.5) - 32.0).max(0.0);
         heat_map(canvas, spec, &fine, &range, 82.0 + beside_map)?;
         let left = 665.0 + beside_map + 2.2 * beside_bar;
+        let on_floor = [&spec.cols, &spec.rows].map(|axis| widest(&axis.ticks(5.0), 12.0));
+        let right = 1185.0 - 1.5 * (on_floor[0].max(on_floor[1]) - 44.0).max(0.0);
         space(
             canvas,
             spec,
             &coarse,
             &range,
-            &Rect::new(left, 62.0, 1185.0 - left, 530.0),
+            &Rect::new(left, 62.0, right - left, 530.0),
         )
     })
 }
