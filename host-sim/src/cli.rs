@@ -20,12 +20,13 @@ use host_sim::control::{
 };
 use host_sim::fuzzy::files::error::ReadError;
 use host_sim::hil::Outage;
+pub use host_sim::put::{put, put_all};
 use host_sim::run::RunError;
 use host_sim::scenario::{PathForm, Scenario, ScenarioError};
 use host_sim::track::Piece;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Desktop simulator around fuzzypilot's own tick. Without a command it runs the chapter's Experiment 1.
 #[derive(Parser)]
@@ -200,46 +201,6 @@ pub fn check_folder_of(option: &str, folder: &Path) -> Result<(), BadInput> {
         ))),
         _ => Ok(()),
     }
-}
-
-/// Writes a file whole or not at all.
-pub fn put(file: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    put_all(&[(file, bytes)])
-}
-
-/// Writes files that belong together: none takes its place before all of them are written.
-pub fn put_all(files: &[(&Path, &[u8])]) -> anyhow::Result<()> {
-    let mut moves = Vec::new();
-    let mut done = Ok(());
-    for &(file, bytes) in files {
-        // What a link or a device leads to is written as it is: a rename would put a file in its place.
-        let special = file.symlink_metadata().is_ok_and(|m| !m.is_file());
-        let place = if special {
-            file.to_owned()
-        } else {
-            let mut partial = file.as_os_str().to_owned();
-            partial.push(format!(".{}.tmp", std::process::id()));
-            let partial = PathBuf::from(partial);
-            moves.push((partial.clone(), file));
-            partial
-        };
-        done = std::fs::write(place, bytes)
-            .with_context(|| format!("{}: cannot be written", file.display()));
-        if done.is_err() {
-            break;
-        }
-    }
-    for (partial, file) in &moves {
-        if done.is_ok() {
-            done = std::fs::rename(partial, file)
-                .with_context(|| format!("{}: cannot be written", file.display()));
-        }
-        if done.is_err() {
-            // Best effort: the error that matters is the one above.
-            let _ = std::fs::remove_file(partial);
-        }
-    }
-    done
 }
 
 impl Variants {

@@ -13,6 +13,7 @@ pub mod metrics;
 pub mod params;
 pub mod plant;
 pub mod plot;
+pub mod put;
 pub mod recorder;
 pub mod recording;
 pub mod replay;

@@ -14,7 +14,8 @@ pub mod surface;
 use std::ops::Range;
 use std::path::Path;
 
-use anyhow::{Context, Result, ensure};
+use crate::put::put_all;
+use anyhow::{Result, ensure};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
@@ -31,7 +32,7 @@ pub use surface::{SurfaceSpec, surface_svg};
 const FINE: f64 = 8.0;
 /// First the embedded face, then what a browser without it should take.
 const FAMILY: &str = "Ubuntu, Helvetica, Arial, sans-serif";
-/// Pixels of PNG a pixel of the figure in [`write_pair`].
+/// Pixels of PNG a pixel of the figure in [`pair`].
 const PNG_SCALE: f32 = 2.0;
 
 /// Pixels across a figure.
@@ -42,31 +43,26 @@ const MUTED: RGBColor = RGBColor(0x5F, 0x66, 0x6E);
 const GRID: RGBColor = RGBColor(0xE3, 0xE6, 0xE9);
 const FRAME: RGBColor = RGBColor(0x8A, 0x91, 0x99);
 
+/// A figure as files: `stem.svg` and `stem.png`.
+///
+/// # Errors
+/// When the picture cannot be rasterised.
+pub fn pair(stem: &str, svg: &str) -> Result<[(String, Vec<u8>); 2]> {
+    let png = png(svg, PNG_SCALE)?;
+    Ok([
+        (format!("{stem}.svg"), svg.as_bytes().to_vec()),
+        (format!("{stem}.png"), png),
+    ])
+}
+
 /// Writes `stem.svg` and `stem.png` into `dir`, which must exist; a failure leaves no half-written file.
 ///
 /// # Errors
 /// When the picture cannot be rasterised or a file cannot be written.
 pub fn write_pair(dir: &Path, stem: &str, svg: &str) -> Result<()> {
     // Rasterise first: a broken figure should not replace a good one.
-    let png = png(svg, PNG_SCALE)?;
-    write_whole(&dir.join(format!("{stem}.svg")), svg.as_bytes())?;
-    write_whole(&dir.join(format!("{stem}.png")), &png)
-}
-
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut name = path
-        .file_name()
-        .context("figure without a file name")?
-        .to_os_string();
-    // The process's number keeps two runs into one directory apart.
-    name.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(name);
-    let done = std::fs::write(&temporary, bytes).and_then(|()| std::fs::rename(&temporary, path));
-    if done.is_err() {
-        // Best effort: the error that matters is the one above.
-        let _ = std::fs::remove_file(&temporary);
-    }
-    done.with_context(|| format!("cannot write {}", path.display()))
+    let [(svg_name, svg), (png_name, png)] = pair(stem, svg)?;
+    put_all(&[(&dir.join(svg_name), &svg), (&dir.join(png_name), &png)])
 }
 
 /// A point of the figure, pixels from its top left corner.
@@ -555,7 +551,8 @@ impl Panel {
         }
         let lines: Vec<&str> = self.y_name.lines().collect();
         for (index, line) in lines.iter().enumerate() {
-            let left = self.rect.left - 60.0 - 16.0 * (lines.len() - 1 - index) as f64;
+            let clear = (axis::widest(&self.y_ticks, 12.5) + 20.0).max(60.0);
+            let left = self.rect.left - clear - 16.0 * (lines.len() - 1 - index) as f64;
             canvas.text(line, (left, up), 14.0, INK, UPWARD)?;
         }
         Ok(())

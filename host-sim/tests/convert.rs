@@ -254,6 +254,88 @@ fn code_goes_where_it_is_told() {
 }
 
 #[test]
+fn descriptions_stay_and_the_design_itself_is_not_written_over() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let text = fs::read_to_string(design("greenhouse.fll")).unwrap();
+    let descriptions = |text: &str, mark: &str| -> Vec<String> {
+        let lines = text.lines().map(str::trim);
+        let lines = lines.filter_map(|line| Some(line.strip_prefix(mark)?.trim().to_owned()));
+        lines.collect()
+    };
+    let said = descriptions(&text, "description:");
+    assert!(said.len() >= 3);
+    fs::write(here.join("design.fll"), &text).unwrap();
+    let to = |to: &str| {
+        let output = convert(here)
+            .args(["design.fll", "--to", to])
+            .assert()
+            .success();
+        String::from_utf8(output.get_output().stdout.clone()).unwrap()
+    };
+    assert_eq!(descriptions(&to("fll"), "description:"), said);
+    let fan = fs::read_to_string(design("fan.fll")).unwrap();
+    fs::write(here.join("design.fll"), fan).unwrap();
+    assert!(descriptions(&to("fcl"), "//").contains(&"per cent of its speed".to_owned()));
+    fs::write(here.join("design.fll"), &text).unwrap();
+    for out in ["design.fll", "./design.fll"] {
+        refused(
+            here,
+            &["design.fll", "--to", "fll", "--out", out],
+            &["is the design that is read", "allowed is another file"],
+        );
+    }
+    fs::write(here.join("design.c"), &text).unwrap();
+    refused(
+        here,
+        &[
+            "design.c", "--from", "fll", "--to", "c", "--out", "design.h",
+        ],
+        &["is the design that is read"],
+    );
+    assert_eq!(fs::read_to_string(here.join("design.fll")).unwrap(), text);
+    assert_eq!(fs::read_to_string(here.join("design.c")).unwrap(), text);
+}
+
+#[test]
+fn names_of_c_and_of_rust_are_left_to_them() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    let fan = design("fan.fll");
+    let fan = fan.to_str().unwrap();
+    // The header's name says where both go, too.
+    convert(here)
+        .args([fan, "--to", "c", "--out", "vent.h"])
+        .assert()
+        .success();
+    assert!(here.join("vent.c").is_file() && here.join("vent.h").is_file());
+    convert(here)
+        .args([fan, "--to", "c", "--name", "stdint", "--out", "."])
+        .assert()
+        .success();
+    let header = fs::read_to_string(here.join("fuzzy_stdint.h")).unwrap();
+    assert!(header.contains("void fuzzy_stdint_evaluate("), "{header}");
+    refused(
+        here,
+        &[fan, "--to", "c", "--out", "stdint.c"],
+        &["its header would be stdint.h, which is one of C's"],
+    );
+    refused(
+        here,
+        &[fan, "--to", "rust", "--name", ""],
+        &["--name: found nothing"],
+    );
+    let text = fs::read_to_string(design("fan.fll")).unwrap();
+    fs::write(here.join("self.fll"), text.replace("humidity", "self")).unwrap();
+    let output = convert(here)
+        .args(["self.fll", "--to", "rust"])
+        .assert()
+        .success();
+    let module = String::from_utf8(output.get_output().stdout.clone()).unwrap();
+    assert!(module.contains("pub type Self2 ="), "{module}");
+}
+
+#[test]
 fn code_that_cannot_be_is_refused() {
     let folder = tempdir().unwrap();
     let greenhouse = design("greenhouse.fll");

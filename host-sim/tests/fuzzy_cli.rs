@@ -130,6 +130,140 @@ fn a_point_shows_both_values_and_the_rules_that_fire() {
     );
 }
 
+/// A range a millionth of where it lies, and a default in its middle.
+const FAR: &str = "\
+Engine: far
+InputVariable: Größe
+  range: 1000000 1000001
+  lock-range: true
+  term: small Ramp 1000001 1000000
+  term: large Ramp 1000000 1000001
+OutputVariable: out
+  range: 1000000 1000001
+  lock-range: true
+  aggregation: none
+  defuzzifier: WeightedAverage TakagiSugeno
+  default: 1000000.5
+  term: low Constant 1000000.3
+  term: follow Linear 1 0.5
+RuleBlock: rules
+  conjunction: Minimum
+  disjunction: Maximum
+  implication: Minimum
+  activation: General
+  rule: if Größe is small then out is low
+  rule: if Größe is large then out is follow with 0.1234567
+";
+
+#[test]
+fn numbers_are_told_as_far_as_they_matter() {
+    let dir = with(FAR);
+    let at = "Größe=1000000.5123456";
+    let said = done(dir.path(), &["eval", "design.fll", "--input", at]);
+    assert!(said.contains("far at Größe = 1000000.5123456\n"), "{said}");
+    assert!(said.contains("with 0.1234567 "), "{said}");
+    let rows = rows(&said);
+    assert_eq!(rows[1][..2], ["Größe", "1000000.5123456"]);
+    let output = rows.iter().find(|row| row[0] == "out").unwrap();
+    let number = |cell: usize| output[cell].parse::<f64>().unwrap();
+    let system = load(&dir.path().join("design.fll"), None).unwrap();
+    let exact = Exact::new(&system).evaluate(&[1_000_000.512_345_6]);
+    assert!((number(1) - exact.outputs[0].unwrap()).abs() < 1e-4);
+    // Both values and their difference agree.
+    assert!(number(3) != 0.0 && output[1] != output[2], "{output:?}");
+    assert!(
+        (number(2) - number(1) - number(3)).abs() < 2e-4,
+        "{output:?}"
+    );
+    // What is drawn and written as code says the file's numbers, too.
+    done(dir.path(), &["surface", "design.fll", "--out", "."]);
+    let svg = fs::read_to_string(dir.path().join("design-memberships.svg")).unwrap();
+    assert!(svg.contains("follow: 1·Größe + 0.5"), "{svg}");
+    done(
+        dir.path(),
+        &["convert", "design.fll", "--to", "c", "--out", "far.c"],
+    );
+    let header = fs::read_to_string(dir.path().join("far.h")).unwrap();
+    assert!(
+        header.contains("/* Where no rule fires: 1000000.5. */"),
+        "{header}"
+    );
+}
+
+/// A text of a picture: what it says, and about where it stands, in the picture's own units.
+#[derive(Debug)]
+struct Text {
+    says: String,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Text {
+    fn overlaps(&self, other: &Self) -> bool {
+        let apart = |a: [f64; 2], b: [f64; 2]| a[1] <= b[0] || b[1] <= a[0];
+        !apart(self.x, other.x) && !apart(self.y, other.y)
+    }
+}
+
+fn texts(svg: &str) -> Vec<Text> {
+    let read = |part: &str| {
+        let (head, rest) = part.split_once('>').unwrap();
+        let says = rest.split("</text>").next().unwrap().trim().to_owned();
+        let word = |name: &str| {
+            let (_, rest) = head.split_once(&format!(" {name}=\"")).unwrap();
+            rest.split('"').next().unwrap()
+        };
+        let number = |name: &str| word(name).parse::<f64>().unwrap();
+        let size = number("font-size");
+        // As wide as the face's digits.
+        let width = 0.55 * size * says.chars().count() as f64;
+        // Its top stands at y, or its middle.
+        let below = if word("dy") == "0.76em" {
+            0.4 * size
+        } else {
+            0.0
+        };
+        let [x, y] = [number("x"), number("y") + below];
+        let half = |middle: f64, of: f64| [middle - of / 2.0, middle + of / 2.0];
+        let (x, y) = match (head.contains("rotate"), word("text-anchor")) {
+            (true, _) => (half(x, 0.7 * size), half(y, width)),
+            (false, "middle") => (half(x, width), half(y, 0.7 * size)),
+            (false, "end") => ([x - width, x], half(y, 0.7 * size)),
+            (false, _) => ([x, x + width], half(y, 0.7 * size)),
+        };
+        Text { says, x, y }
+    };
+    svg.split("<text").skip(1).map(read).collect()
+}
+
+#[test]
+fn long_numbers_in_pictures_stand_clear_of_each_other_and_of_the_edge() {
+    let input = FAR.find("InputVariable").unwrap();
+    let output = FAR.find("OutputVariable").unwrap();
+    let second = FAR[input..output].replace("Größe", "second");
+    let text = FAR.replace("Linear 1 0.5", "Linear 0.5 0.5 0");
+    let dir = with(&text.replace("OutputVariable", &format!("{second}OutputVariable")));
+    done(dir.path(), &["surface", "design.fll", "--out", "."]);
+    for (file, least) in [("design-out.svg", 20), ("design-memberships.svg", 30)] {
+        let svg = fs::read_to_string(dir.path().join(file)).unwrap();
+        let texts = texts(&svg);
+        let numbers: Vec<&Text> = texts
+            .iter()
+            .filter(|text| text.says.starts_with("100000"))
+            .collect();
+        assert!(numbers.len() >= least, "{file}: {}", numbers.len());
+        for (index, text) in numbers.iter().enumerate() {
+            // The picture is 1200 pixels wide, eight units each.
+            assert!(text.x[0] >= 0.0 && text.x[1] <= 9600.0, "{file}: {text:?}");
+            let others = numbers[index + 1..].iter().copied();
+            let names = texts.iter().filter(|text| !text.says.starts_with("100000"));
+            for other in others.chain(names) {
+                assert!(!text.overlaps(other), "{file}: {text:?} and {other:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn where_no_rule_fires_it_says_so() {
     let dir = with(BOILER);
@@ -150,6 +284,24 @@ fn where_no_rule_fires_it_says_so() {
         "no rule fires"
     );
     assert_eq!(rows.iter().find(|row| row[0] == "load").unwrap()[2], "none");
+}
+
+#[test]
+fn a_value_outside_its_range_is_told_with_what_follows() {
+    let dir = with(BOILER);
+    let eval = |more: &[&str]| done(dir.path(), &[&["eval", "design.fll"][..], more].concat());
+    let open = "error lies outside -10 to 10: the announced error does not hold there\n";
+    let said = eval(&["--input", "error=12", "--input", "load=1.5"]);
+    assert!(said.contains(open), "{said}");
+    assert!(
+        said.contains("load lies outside 0 to 1: it counts as 1\n"),
+        "{said}"
+    );
+    let grid = ["--input", "error=12", "--grid", "3", "--csv", "all.csv"];
+    let said = eval(&grid);
+    assert_eq!(said, format!("all.csv: rows: 3\n{open}"));
+    let said = eval(&["--input", "error=10", "--input", "load=0"]);
+    assert!(!said.contains("lies outside"), "{said}");
 }
 
 #[test]
@@ -219,6 +371,23 @@ fn a_good_design_has_no_finding_and_a_small_error() {
     assert!(
         number(3) > 0.0 && number(3) <= number(4) && number(4) <= number(7) && number(7) < 0.01
     );
+}
+
+/// What the documentation shows first can be pasted into a file, and is sound.
+#[test]
+fn the_documentations_ten_lines_are_a_design() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/fuzzy.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, listing) = page.split_once("```text\n").unwrap();
+    let (listing, _) = listing.split_once("```").unwrap();
+    let dir = with(listing);
+    let deny = "gaps,dead-rules,unreachable-terms,non-monotone,no-fixed-point";
+    done(dir.path(), &["check", "design.fll", "--deny", deny]);
+    let input = ["eval", "design.fll", "--input", "temperature=28"];
+    let said = done(dir.path(), &input);
+    let rows = rows(&said);
+    let output = rows.iter().find(|row| row[0] == "fan").unwrap();
+    assert_eq!(output[1], "70");
 }
 
 #[test]
@@ -402,6 +571,56 @@ fn pictures_of_all_outputs_and_of_the_terms() {
     assert!(svg.contains("no rule fires"));
     let svg = fs::read_to_string(dir.path().join("out/fuzzy/design-memberships.svg")).unwrap();
     assert!(svg.contains("out of this range: extreme"));
+}
+
+#[test]
+fn every_output_has_its_own_picture_whatever_it_is_called() {
+    let outputs = |names: &[&str]| {
+        let mut text = BOILER.to_owned();
+        let start = text.find("OutputVariable").unwrap();
+        let end = text.find("RuleBlock").unwrap();
+        let output = text[start..end].to_owned();
+        let more: String = names
+            .iter()
+            .map(|name| output.replace("valve", name))
+            .collect();
+        text.insert_str(end, &more);
+        for name in names {
+            text += &format!("  rule: if error is cold then {name} is open\n");
+        }
+        text
+    };
+    let dir = with(&outputs(&["memberships", "Valve", "VALVE"]));
+    done(dir.path(), &["surface", "design.fll", "--out", "."]);
+    let pictures: Vec<String> = names(dir.path())
+        .into_iter()
+        .filter(|name| name.ends_with(".svg"))
+        .collect();
+    assert_eq!(
+        pictures,
+        [
+            "design-VALVE-3.svg",
+            "design-Valve-2.svg",
+            "design-memberships-2.svg",
+            "design-memberships.svg",
+            "design-valve.svg"
+        ]
+    );
+    let svg = fs::read_to_string(dir.path().join("design-memberships.svg")).unwrap();
+    assert!(svg.contains("extreme"), "the terms, not the output");
+    // One picture that cannot be written: none is.
+    let dir = with(BOILER);
+    fs::create_dir_all(dir.path().join("out/design-valve.png")).unwrap();
+    let failed = sim(dir.path())
+        .args(["surface", "design.fll", "--out", "out"])
+        .assert()
+        .code(1);
+    let said = String::from_utf8(failed.get_output().stderr.clone()).unwrap();
+    assert!(
+        said.contains("design-valve.png: cannot be written"),
+        "{said}"
+    );
+    assert_eq!(names(&dir.path().join("out")), ["design-valve.png"]);
 }
 
 #[test]

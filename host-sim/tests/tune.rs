@@ -167,6 +167,92 @@ fn any_number_of_threads_and_any_break_give_the_same() {
     );
 }
 
+/// A design as MATLAB writes it: sets, a centroid from end to end, a name with a blank.
+const TIPPER: &str = "\
+[System]
+Name='tipper'
+Type='mamdani'
+NumInputs=2
+NumOutputs=1
+NumRules=3
+AndMethod='min'
+OrMethod='max'
+ImpMethod='min'
+AggMethod='max'
+DefuzzMethod='centroid'
+[Input1]
+Name='service'
+Range=[0 10]
+NumMFs=3
+MF1='poor':'gaussmf',[1.5 0]
+MF2='very good':'gaussmf',[1.5 5]
+MF3='excellent':'gaussmf',[1.5 10]
+[Input2]
+Name='food quality'
+Range=[0 10]
+NumMFs=2
+MF1='rancid':'trapmf',[0 0 1 3]
+MF2='delicious':'trapmf',[7 9 10 10]
+[Output1]
+Name='tip'
+Range=[0 30]
+NumMFs=3
+MF1='cheap':'trimf',[0 5 10]
+MF2='average':'trimf',[10 15 20]
+MF3='generous':'trimf',[20 25 30]
+[Rules]
+1 1, 1 (1) : 2
+2 0, 2 (1) : 1
+3 2, 3 (1) : 2
+";
+
+#[test]
+fn a_design_of_matlabs_is_tuned_and_written_where_its_centroid_can_be_said() {
+    let folder = tempdir().unwrap();
+    let here = folder.path();
+    fs::write(here.join("tipper.fis"), TIPPER).unwrap();
+    let wanted = TIPPER.replace("[10 15 20]", "[8 13 18]");
+    fs::write(here.join("wanted.fis"), wanted).unwrap();
+    host_sim(here)
+        .args(["eval", "wanted.fis", "--grid", "9", "--csv", "data.csv"])
+        .assert()
+        .success();
+    let data = fs::read_to_string(here.join("data.csv")).unwrap();
+    let data = data.replace("tip (fixed)", "fixed");
+    fs::write(here.join("data.csv"), data).unwrap();
+    let args = "tipper.fis --data data.csv --ignore fixed --only tip --evaluations 200 --out tuned";
+    refused(
+        here,
+        tune(here, args),
+        &[
+            "FCL has no such name: the term `very good`",
+            "(--adapt does that)",
+        ],
+    );
+    let done = tune(here, &format!("{args} --adapt")).assert().success();
+    let said = String::from_utf8(done.get_output().stderr.clone()).unwrap();
+    for change in [
+        "the variable `food quality` is now `food_quality`",
+        "the term of `service` `very good` is now `very_good`",
+    ] {
+        assert!(said.contains(change), "{said}");
+    }
+    let report = report(here, "tuned");
+    let cost = |when: &str| report["cost"][when].as_f64().unwrap();
+    assert!(cost("after") < 0.5 * cost("before"), "{report}");
+    // The file says what was judged: samples from end to end, and the same value at a point.
+    let text = fs::read_to_string(here.join("tuned/tuned.fcl")).unwrap();
+    assert!(text.contains("samples: 101 ends"), "{text}");
+    let tuned = load(&here.join("tuned/tuned.fcl"), None).unwrap();
+    assert_eq!(tuned.inputs[1].name, "food_quality");
+    let module = fs::read_to_string(here.join("tuned/tuned.rs")).unwrap();
+    host_sim(here)
+        .args(["convert", "tuned/tuned.fcl", "--to", "rust"])
+        .assert()
+        .success()
+        .stdout(module);
+}
+
 #[test]
 fn what_is_fixed_stays() {
     let folder = folder();

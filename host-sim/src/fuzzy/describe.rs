@@ -3,7 +3,11 @@
 use super::check::Stretch;
 use super::model::{Antecedent, Place, Rule, System};
 
-/// A number with six significant digits at most.
+/// A number in full: as short as it can be without becoming another one.
+pub use super::files::writing::number as exact;
+
+/// A number with six significant digits at most: for what has no scale of its own, as an error. What lies in a range is
+/// told to the range's or the step's resolution, see [`number_to`].
 pub fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{}", x + 0.0);
@@ -15,6 +19,18 @@ pub fn number(x: f64) -> String {
         return format!("{}e{power}", trimmed(digits));
     }
     let places = (5.0 - size).max(0.0) as usize;
+    trimmed(&format!("{x:.places$}")).to_owned()
+}
+
+/// A number so that what matters of it is told: with six significant digits where they are right to a tenth of `resolution`,
+/// else with as many as are. A resolution that is no positive number asks for nothing more.
+pub fn number_to(x: f64, resolution: f64) -> String {
+    let short = number(x);
+    let off = short.parse().map_or(0.0, |short: f64| (short - x).abs());
+    if !(resolution > 0.0 && off > 0.1 * resolution) {
+        return short;
+    }
+    let places = (1.0 - resolution.log10().floor()).clamp(0.0, 17.0) as usize;
     trimmed(&format!("{x:.places$}")).to_owned()
 }
 
@@ -36,11 +52,23 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// A point: `temperature = 36, humidity = 15`.
+/// A point: `temperature = 36, humidity = 15`, to a ten thousandth of each range.
 pub fn point(system: &System, values: &[f64]) -> String {
+    values_of(system, values, |x, span| number_to(x, 1e-4 * span))
+}
+
+/// A point as it was given, every digit.
+pub fn given_point(system: &System, values: &[f64]) -> String {
+    values_of(system, values, |x, _| exact(x))
+}
+
+fn values_of(system: &System, values: &[f64], text: impl Fn(f64, f64) -> String) -> String {
     let values = system.inputs.iter().zip(values);
     let each: Vec<String> = values
-        .map(|(input, &x)| format!("{} = {}", input.name, number(x)))
+        .map(|(input, &x)| {
+            let span = input.range.end() - input.range.start();
+            format!("{} = {}", input.name, text(x, span))
+        })
         .collect();
     each.join(", ")
 }
@@ -48,15 +76,12 @@ pub fn point(system: &System, values: &[f64]) -> String {
 /// A stretch: `30 to 80`, without its ends where they do not belong to it; `exactly 24` for one value.
 pub fn stretch(stretch: &Stretch) -> String {
     if stretch.from == stretch.to {
-        return format!("exactly {}", number(stretch.from));
+        return format!("exactly {}", exact(stretch.from));
     }
+    let end = |x| number_to(x, 1e-4 * (stretch.to - stretch.from));
     let above = if stretch.with_from { "" } else { "above " };
     let below = if stretch.with_to { "" } else { "below " };
-    format!(
-        "{above}{} to {below}{}",
-        number(stretch.from),
-        number(stretch.to)
-    )
+    format!("{above}{} to {below}{}", end(stretch.from), end(stretch.to))
 }
 
 /// An input's term: `temperature is low`.
@@ -86,7 +111,7 @@ pub fn rule(system: &System, rule: &Rule) -> String {
         .collect();
     let weight = match rule.weight {
         1.0 => String::new(),
-        weight => format!(" with {}", number(weight)),
+        weight => format!(" with {}", exact(weight)),
     };
     let antecedent = antecedent(system, &rule.antecedent, false);
     format!("if {antecedent} then {}{weight}", conclusions.join(" and "))
@@ -147,6 +172,23 @@ mod tests {
             [0.0, 1e-6, 0.06, 0.999_999, 1.0].map(percent),
             ["0 %", "< 0.01 %", "6 %", "> 99.99 %", "100 %"]
         );
+    }
+
+    #[test]
+    fn numbers_are_as_long_as_what_they_are_of_needs() {
+        for (x, resolution, text) in [
+            (1_000_000.512_345_6, 1e-4, "1000000.51235"),
+            (1_000_000.512_345_6, 1000.0, "1000001"),
+            (45.000_004, 1e-3, "45"),
+            (45.000_04, 1e-4, "45.00004"),
+            (1e12 + 0.5, 0.1, "1000000000000.5"),
+            (1.0 / 3.0, 0.0, "0.333333"),
+            (1.0 / 3.0, f64::NAN, "0.333333"),
+            (f64::INFINITY, 1.0, "inf"),
+        ] {
+            assert_eq!(number_to(x, resolution), text, "{x} to {resolution}");
+        }
+        assert_eq!(exact(1_000_000.512_345_6), "1000000.5123456");
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub struct Place {
 pub struct System {
     /// Its name; may be empty.
     pub name: String,
+    /// What its designer says of it, one line; may be empty. No computation depends on a description.
+    pub description: String,
     /// One to four.
     pub inputs: Vec<Input>,
     /// One or more.
@@ -26,6 +28,15 @@ pub struct System {
 }
 
 impl System {
+    /// The same with no description anywhere: to compare what several files compute, for only FLL has them.
+    pub fn without_descriptions(mut self) -> Self {
+        self.description.clear();
+        self.inputs.iter_mut().for_each(|i| i.description.clear());
+        self.outputs.iter_mut().for_each(|o| o.description.clear());
+        self.blocks.iter_mut().for_each(|b| b.description.clear());
+        self
+    }
+
     /// The same with no place anywhere: to compare what several files say.
     pub fn without_places(mut self) -> Self {
         let nowhere = Place::default();
@@ -49,6 +60,8 @@ impl System {
 pub struct Input {
     /// Its name, unique among all variables.
     pub name: String,
+    /// See [`System::description`].
+    pub description: String,
     /// The range that it is designed for: finite, the end above the start. What lies outside counts as the nearer end if
     /// `clamp`, else as it is.
     pub range: RangeInclusive<f64>,
@@ -151,6 +164,8 @@ pub enum Shape {
 pub struct Output {
     /// Its name, unique among all variables.
     pub name: String,
+    /// See [`System::description`].
+    pub description: String,
     /// Its range: finite, the end above the start.
     pub range: RangeInclusive<f64>,
     /// Whether its value is limited to the range.
@@ -232,6 +247,8 @@ pub enum Merge {
 pub struct RuleBlock {
     /// Its name; may be empty.
     pub name: String,
+    /// See [`System::description`].
+    pub description: String,
     /// AND.
     pub and: Conjunction,
     /// What a rule's degree does to a [`Conclusion::Set`].

@@ -77,7 +77,7 @@ pub fn variables(system: &System) -> Vec<Variable> {
                     Conclusion::Linear {
                         coefficients,
                         constant,
-                    } => Form::Text(formula(system, coefficients, *constant)),
+                    } => Form::Text(formula(system, output, coefficients, *constant)),
                 },
             })
             .collect(),
@@ -96,16 +96,21 @@ fn kind(output: &Output) -> &'static str {
     }
 }
 
-/// `0.5·error − 2·rate + 1`.
-fn formula(system: &System, coefficients: &[f64], constant: f64) -> String {
+/// `0.5·error − 2·rate + 1`, every number so that it tells a ten thousandth of the output's range.
+fn formula(system: &System, output: &Output, coefficients: &[f64], constant: f64) -> String {
+    let span = |range: &RangeInclusive<f64>| range.end() - range.start();
+    let resolution = 1e-4 * span(&output.range);
     let mut parts: Vec<(f64, String)> = coefficients
         .iter()
         .zip(&system.inputs)
         .filter(|(c, _)| **c != 0.0)
-        .map(|(&c, input)| (c, format!("{}·{}", describe::number(c.abs()), input.name)))
+        .map(|(&c, input)| {
+            let factor = describe::number_to(c.abs(), resolution / span(&input.range));
+            (c, format!("{factor}·{}", input.name))
+        })
         .collect();
     if constant != 0.0 || parts.is_empty() {
-        parts.push((constant, describe::number(constant.abs())));
+        parts.push((constant, describe::number_to(constant.abs(), resolution)));
     }
     let mut text = String::new();
     for (index, (sign, part)) in parts.iter().enumerate() {
@@ -145,7 +150,7 @@ fn form(shape: &Shape, range: &RangeInclusive<f64>) -> Form {
 pub fn held(system: &System, values: &[f64], axes: &[usize]) -> String {
     let others: Vec<String> = (system.inputs.iter().zip(values).enumerate())
         .filter(|(index, _)| !axes.contains(index))
-        .map(|(_, (input, &x))| format!("{} = {}", input.name, describe::number(x)))
+        .map(|(_, (input, &x))| format!("{} = {}", input.name, describe::exact(x)))
         .collect();
     if others.is_empty() {
         String::new()

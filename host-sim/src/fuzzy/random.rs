@@ -20,6 +20,7 @@ pub fn system(rng: &mut impl Rng) -> System {
     let blocks = (0..if rng.random_bool(0.2) { 2 } else { 1 })
         .map(|i| RuleBlock {
             name: format!("rules{i}"),
+            description: String::new(),
             and: conjunction(rng),
             implication: conjunction(rng),
             rules: rules(rng, &inputs, &outputs),
@@ -27,6 +28,7 @@ pub fn system(rng: &mut impl Rng) -> System {
         .collect();
     System {
         name: "random".to_owned(),
+        description: String::new(),
         inputs,
         outputs,
         blocks,
@@ -48,6 +50,7 @@ fn input(rng: &mut impl Rng, index: usize) -> Input {
     });
     Input {
         name: format!("input{index}"),
+        description: String::new(),
         clamp: rng.random_bool(0.5),
         terms: terms.collect(),
         range,
@@ -204,6 +207,7 @@ fn output(rng: &mut impl Rng, index: usize, inputs: usize) -> Output {
     let terms: Vec<OutputTerm> = terms.collect();
     Output {
         name: format!("output{index}"),
+        description: String::new(),
         clamp: rng.random_bool(0.5),
         default: rng.random_bool(0.5).then(|| within(rng)),
         defuzzifier: if mamdani {

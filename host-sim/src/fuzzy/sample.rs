@@ -15,6 +15,7 @@ pub fn fan() -> System {
     };
     let input = |name: &str, end: f64, terms| Input {
         name: name.to_owned(),
+        description: String::new(),
         range: 0.0..=end,
         clamp: true,
         terms,
@@ -29,6 +30,7 @@ pub fn fan() -> System {
     let cells = (0..3).flat_map(|row| (0..2).map(move |col| (row, col)));
     System {
         name: "fan".to_owned(),
+        description: String::new(),
         inputs: vec![
             input(
                 "temperature",
@@ -81,6 +83,7 @@ pub fn fan() -> System {
         ],
         outputs: vec![Output {
             name: "speed".to_owned(),
+            description: String::new(),
             range: 0.0..=100.0,
             clamp: true,
             default: None,
@@ -91,6 +94,7 @@ pub fn fan() -> System {
         }],
         blocks: vec![RuleBlock {
             name: String::new(),
+            description: String::new(),
             and: Conjunction::Min,
             implication: Conjunction::Min,
             rules: cells

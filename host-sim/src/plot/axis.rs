@@ -1,6 +1,6 @@
 //! A variable as an axis of a figure.
 
-use super::{ticks, ticks_by};
+use super::{decimals, text_width, tick_text, ticks, ticks_by};
 use anyhow::{Result, ensure};
 use std::ops::Range;
 
@@ -64,4 +64,28 @@ impl Axis {
         }
         ticks(&self.span(), most)
     }
+
+    /// The same, but fewer where their numbers, written in this size, would touch each other along `room` pixels.
+    pub(super) fn ticks_apart(&self, most: f64, room: f64, size: f64) -> Vec<f64> {
+        let scale = room / (self.range.1 - self.range.0);
+        let mut most = most;
+        loop {
+            let ticks = self.ticks(most);
+            let gaps = ticks.windows(2).map(|pair| scale * (pair[1] - pair[0]));
+            let gap = gaps.fold(f64::INFINITY, f64::min);
+            if gap >= widest(&ticks, size) + 8.0 || most <= 2.0 {
+                return ticks;
+            }
+            most -= 1.0;
+        }
+    }
+}
+
+/// Pixels of the longest number among ticks.
+pub(super) fn widest(ticks: &[f64], size: f64) -> f64 {
+    let places = decimals(ticks);
+    let widths = ticks
+        .iter()
+        .map(|&tick| text_width(&tick_text(tick, places), size));
+    widths.fold(0.0, f64::max)
 }

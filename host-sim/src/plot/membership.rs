@@ -123,6 +123,8 @@ impl Variable {
 }
 
 const LEFT: f64 = 82.0;
+/// Room for half of a long number at the end of an axis.
+const RIGHT: f64 = 44.0;
 const HEIGHT: f64 = 168.0;
 /// From one panel to the next, and down to the first.
 const PITCH: f64 = HEIGHT + 104.0;
@@ -136,7 +138,7 @@ pub fn membership_svg(title: &str, variables: &[Variable]) -> Result<String> {
     for variable in variables {
         variable.check()?;
     }
-    let width = WIDTH - 28.0 - LEFT;
+    let width = WIDTH - RIGHT - LEFT;
     let height = FIRST + variables.len().max(1) as f64 * PITCH - 44.0;
     document(WIDTH, height, |canvas| {
         canvas.heading(title)?;
@@ -153,7 +155,7 @@ fn draw(canvas: &Canvas, variable: &Variable, rect: Rect) -> Result<()> {
         rect,
         x: variable.span(),
         y: 0.0..1.08,
-        x_ticks: variable.axis.ticks(12.0),
+        x_ticks: variable.axis.ticks_apart(12.0, rect.width(), 12.5),
         y_ticks: vec![0.0, 0.5, 1.0],
         x_name: variable.axis.label(),
         y_name: variable.kind.clone(),

@@ -30,7 +30,7 @@ pub fn png(svg: &str, scale: f32) -> Result<Vec<u8>> {
     ] {
         fonts.load_font_source(fontdb::Source::Binary(Arc::new(face)));
     }
-    let tree = Tree::from_str(svg, &options).context("cannot read the figure")?;
+    let tree = Tree::from_str(&spelt(svg), &options).context("cannot read the figure")?;
     let (width, height) = (
         (tree.size().width() * scale).ceil(),
         (tree.size().height() * scale).ceil(),
@@ -48,6 +48,26 @@ pub fn png(svg: &str, scale: f32) -> Result<Vec<u8>> {
         &mut picture.as_mut(),
     );
     picture.encode_png().context("cannot encode the picture")
+}
+
+/// Letters of scripts that the embedded faces lack, such as Chinese, spelt in ASCII: a font with them would be larger than the
+/// whole program. The SVG keeps them, and whoever shows it has the fonts.
+fn spelt(svg: &str) -> String {
+    let lacks = |c: char| {
+        let beyond_cyrillic = c >= '\u{530}' && !('\u{1d00}'..'\u{2e00}').contains(&c);
+        beyond_cyrillic && c.is_alphanumeric()
+    };
+    let mut text = String::with_capacity(svg.len());
+    for c in svg.chars() {
+        match lacks(c) {
+            false => text.push(c),
+            true => {
+                let ascii = deunicode::deunicode_char(c).unwrap_or("?").trim();
+                text.extend(ascii.chars().filter(|c| !matches!(c, '<' | '>' | '&')));
+            }
+        }
+    }
+    text
 }
 
 #[cfg(test)]
@@ -77,6 +97,9 @@ mod tests {
         assert_eq!(dark_pixels(&with(" ")), 0);
         assert!(dark_pixels(&with("Hhh")) > 200);
         assert!(dark_pixels(&with("φ")) > 30);
+        // A box is what a missing letter would be.
+        assert_eq!(with("温度"), with("WenDu"));
+        assert_ne!(with("Größe"), with("Grosse"));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 use plotters::style::{Color, RGBColor};
 use rayon::prelude::*;
 
-use super::axis::Axis;
+use super::axis::{Axis, widest};
 use super::{
     CENTRED, Canvas, FRAME, FROM_LEFT, FROM_RIGHT, GRID, INK, MUTED, Panel, Point, Rect, UPWARD,
     WIDTH, between, decimals, distance, document, extent, fitted, shaded, text_width, tick_text,
@@ -71,13 +71,19 @@ pub fn surface_svg(spec: &SurfaceSpec) -> Result<String> {
         canvas.heading(&spec.title)?;
         let note = fitted(&spec.note, 14.0, WIDTH - 110.0);
         canvas.text(&note, (82.0, 54.0), 14.0, MUTED, FROM_LEFT)?;
-        heat_map(canvas, spec, &fine, &range)?;
+        // What long numbers beside the map, beside the colour bar and on the floor take, the surface in space gives.
+        let beside_map = (widest(&spec.rows.ticks(7.0), 12.5) - 42.0).max(0.0);
+        let beside_bar = (widest(&levels(&range), 12.5) - 32.0).max(0.0);
+        heat_map(canvas, spec, &fine, &range, 82.0 + beside_map)?;
+        let left = 665.0 + beside_map + 2.2 * beside_bar;
+        let on_floor = [&spec.cols, &spec.rows].map(|axis| widest(&axis.ticks(5.0), 12.0));
+        let right = 1185.0 - 1.5 * (on_floor[0].max(on_floor[1]) - 44.0).max(0.0);
         space(
             canvas,
             spec,
             &coarse,
             &range,
-            &Rect::new(665.0, 62.0, 520.0, 530.0),
+            &Rect::new(left, 62.0, right - left, 530.0),
         )
     })
 }
@@ -226,15 +232,21 @@ fn share(value: f64, range: &Range<f64>) -> f64 {
     (value - range.start) / (range.end - range.start)
 }
 
-fn heat_map(canvas: &Canvas, spec: &SurfaceSpec, field: &Field, range: &Range<f64>) -> Result<()> {
+fn heat_map(
+    canvas: &Canvas,
+    spec: &SurfaceSpec,
+    field: &Field,
+    range: &Range<f64>,
+    left: f64,
+) -> Result<()> {
     let side = HEAT_SIDE;
     let cell = side / field.cells as f64;
-    let rect = Rect::new(82.0, 110.0, side, side);
+    let rect = Rect::new(left, 110.0, side, side);
     let panel = Panel {
         rect,
         x: spec.cols.span(),
         y: spec.rows.span(),
-        x_ticks: spec.cols.ticks(7.0),
+        x_ticks: spec.cols.ticks_apart(7.0, side, 12.5),
         y_ticks: spec.rows.ticks(7.0),
         x_name: spec.cols.label(),
         y_name: spec.rows.label(),
@@ -524,7 +536,12 @@ fn space(
     let far = (1.0 - near.0, 1.0 - near.1);
 
     let levels = levels(range);
-    let (col_ticks, row_ticks) = (spec.cols.ticks(5.0), spec.rows.ticks(5.0));
+    // The floor's near edges as wide as they look.
+    let corner = view.at(near.0, near.1, 0.0).0;
+    let col_room = (view.at(far.0, near.1, 0.0).0 - corner).abs();
+    let row_room = (view.at(near.0, far.1, 0.0).0 - corner).abs();
+    let col_ticks = spec.cols.ticks_apart(5.0, col_room, 12.0);
+    let row_ticks = spec.rows.ticks_apart(5.0, row_room, 12.0);
     let col_share = |value: f64| share(value, &spec.cols.span());
     let row_share = |value: f64| share(value, &spec.rows.span());
 
@@ -607,15 +624,14 @@ fn space(
             };
             let (edge, end) = beyond(place, 5.0);
             canvas.line(&[edge, end], 1.0, FRAME.to_rgba())?;
-            canvas.text(
-                &tick_text(tick, places),
-                beyond(place, 18.0).1,
-                12.0,
-                INK,
-                CENTRED,
-            )?;
+            // A long number keeps its end where a short one has it.
+            let text = tick_text(tick, places);
+            let long = (text_width(&text, 12.0) / 2.0 - 14.0).max(0.0);
+            let (x, y) = beyond(place, 18.0).1;
+            let x = if end.0 < edge.0 { x - long } else { x + long };
+            canvas.text(&text, (x, y), 12.0, INK, CENTRED)?;
         }
-        let (edge, end) = beyond(0.5, 52.0);
+        let (edge, end) = beyond(0.5, 52.0 + (widest(ticks, 12.0) - 28.0).max(0.0));
         // Names hang away from the box, whatever their length.
         let hang = if end.0 < edge.0 {
             FROM_RIGHT
@@ -641,11 +657,9 @@ fn space(
     let post = [view.at(left.0, left.1, 0.0), view.at(left.0, left.1, 1.0)];
     canvas.line(&post, 1.0, FRAME.to_rgba())?;
     let places = decimals(&levels);
-    let mut widest = 0.0_f64;
     for &level in &levels {
         let (x, y) = view.at(left.0, left.1, share(level, range));
         let text = tick_text(level, places);
-        widest = widest.max(text_width(&text, 12.0));
         canvas.line(&[(x, y), (x - 4.0, y)], 1.0, FRAME.to_rgba())?;
         // The lowest number makes way for the floor's own at the same corner.
         canvas.text(
@@ -657,7 +671,8 @@ fn space(
         )?;
     }
     let name = fitted(&spec.output.label(), 14.0, 240.0);
-    let at = (post[0].0 - 22.0 - widest, (post[0].1 + post[1].1) / 2.0);
+    let wide = widest(&levels, 12.0);
+    let at = (post[0].0 - 22.0 - wide, (post[0].1 + post[1].1) / 2.0);
     canvas.text(&name, at, 14.0, INK, UPWARD)
 }
 

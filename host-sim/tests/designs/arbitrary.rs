@@ -110,6 +110,7 @@ fn input() -> impl Strategy<Value = Input> {
     (range(), any::<bool>(), names("t", 1..=5), vec(shape, 5)).prop_map(
         |(range, clamp, names, shapes)| Input {
             name: String::new(),
+            description: String::new(),
             range,
             clamp,
             terms: names
@@ -161,6 +162,7 @@ fn output(inputs: usize) -> impl Strategy<Value = Output> {
                 };
                 Output {
                     name: String::new(),
+                    description: String::new(),
                     range,
                     clamp,
                     default,
@@ -249,6 +251,7 @@ fn block() -> impl Strategy<Value = RuleBlock> {
     (name, conjunction.clone(), conjunction, vec(rule(), 1..8)).prop_map(
         |(name, and, implication, rules)| RuleBlock {
             name,
+            description: String::new(),
             and,
             implication,
             rules,
@@ -290,6 +293,7 @@ pub fn system() -> impl Strategy<Value = System> {
             }
             System {
                 name,
+                description: String::new(),
                 inputs,
                 outputs,
                 blocks,

@@ -384,3 +384,18 @@ fn numbers_of_shapes_stand_where_each_format_has_them() {
         assert_eq!(read(&text, Format::Fis).inputs[0].terms[1].shape, *wanted);
     }
 }
+
+#[test]
+fn fis_as_octave_may_write_it_is_read_the_same() {
+    let text = include_str!("../../designs/cruise.fis");
+    let plain = read(text, Format::Fis);
+    let (head, rules) = text.split_once("[Rules]\n").unwrap();
+    let rules: String = rules.lines().map(|rule| format!("{rule};\n")).collect();
+    let head = head.replace('\'', "\"").replace("\"sugeno\"", "\"Sugeno\"");
+    let written = format!("{head}[Rules]\n{rules}");
+    assert!(written.contains("Type=\"Sugeno\"") && written.contains(": 1;\n"));
+    assert_eq!(
+        read(&written, Format::Fis).without_places(),
+        plain.without_places()
+    );
+}

@@ -48,6 +48,10 @@ proptest! {
             prop_assert!(error.adaptable && error.to_string().contains("end to end"), "{}", error);
             prop_assert!(!adapt::to_fll(&mut system).is_empty());
         }
+        system.description = "what: it is for".to_owned();
+        system.inputs[0].description = "°C".to_owned();
+        system.outputs[0].description = "if it is so, then".to_owned();
+        system.blocks[0].description = "Engine".to_owned();
         let text = fll::write(&system).unwrap();
         prop_assert_eq!(read(&text, Format::Fll).without_places(), system, "{}", text);
     }

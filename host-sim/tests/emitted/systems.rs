@@ -183,10 +183,12 @@ fn ruspini(rng: &mut impl Rng, twin: bool) -> System {
     rules.shuffle(rng);
     System {
         name: "table".to_owned(),
+        description: String::new(),
         inputs,
         outputs,
         blocks: vec![RuleBlock {
             name: String::new(),
+            description: String::new(),
             and: Conjunction::Min,
             implication: Conjunction::Min,
             rules,
@@ -229,6 +231,7 @@ fn input(rng: &mut impl Rng, index: usize, even: bool) -> Input {
     terms.shuffle(rng);
     Input {
         name: format!("input{index}"),
+        description: String::new(),
         range: peaks[0] - 1.0..=peaks[last] + 1.0,
         clamp: rng.random_bool(0.5),
         terms,
@@ -248,6 +251,7 @@ fn output(rng: &mut impl Rng, index: usize) -> Output {
         .collect();
     Output {
         name: format!("output{index}"),
+        description: String::new(),
         clamp: rng.random_bool(0.5),
         default: None,
         defuzzifier: Defuzzifier::WeightedAverage,

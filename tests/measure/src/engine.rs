@@ -3,6 +3,7 @@
 mod alone;
 mod bars;
 mod count;
+mod oracle;
 
 use crate::machine::{Images, MACHINES};
 use anyhow::{Context, bail};
@@ -38,6 +39,10 @@ pub fn run(write: bool) -> anyhow::Result<()> {
         } = CONTROLLER.evaluate(d, error);
         mix(sum, (speed.bits(), yaw_rate.bits()))
     });
+    for agreement in oracle::agreements()? {
+        println!("{agreement}");
+        agreement.held()?;
+    }
     let mut measured = Vec::new();
     for machine in &MACHINES {
         let counted = count::count(machine, &images, expected)?;

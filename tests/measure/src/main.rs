@@ -24,9 +24,11 @@ enum Command {
     BitExact(BitExact),
     /// Count instructions, stack, flash and memory, and compare them with tests/budgets.toml and the README's table.
     Budgets(Write),
-    /// Evaluate general fuzzy systems: the same bits everywhere, the same count of instructions for every input.
-    Systems,
-    /// Count one evaluation of the fine controller over a grid, and compare results, tests/engine.toml and docs/engine.md.
+    /// Evaluate general fuzzy systems: the same bits everywhere, the same count of instructions for every input, and the
+    /// table in docs/engine.md.
+    Systems(Write),
+    /// Count one evaluation of the fine controller over a grid, and compare results, tests/engine.toml and docs/engine.md;
+    /// tell how far it is off fuzzylite, or off f64.
     Engine(Write),
 }
 
@@ -50,7 +52,7 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::BitExact(arguments) => bit_exact(&arguments),
         Command::Budgets(arguments) => budgets(arguments.write),
-        Command::Systems => systems(),
+        Command::Systems(arguments) => systems::run(arguments.write),
         Command::Engine(arguments) => engine::run(arguments.write),
     };
     match done {
@@ -125,28 +127,6 @@ fn budgets(write: bool) -> anyhow::Result<()> {
         );
     }
     readme(&table, false).context("budgets fit, but")
-}
-
-fn systems() -> anyhow::Result<()> {
-    let images = Images::build()?;
-    let mut table = Table::new();
-    table.load_style(NOTHING);
-    table.set_header(["core", "system", "least", "most"]);
-    let mut constant = true;
-    for machine in &MACHINES {
-        for cost in systems::count(machine, &images)? {
-            constant &= cost.least == cost.most;
-            table.add_row([
-                machine.name,
-                cost.system,
-                &cost.least.to_string(),
-                &cost.most.to_string(),
-            ]);
-        }
-    }
-    println!("{table}");
-    ensure!(constant, "an evaluation's count depends on its inputs");
-    Ok(())
 }
 
 /// What was measured, and where the worst was.

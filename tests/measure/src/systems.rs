@@ -1,6 +1,7 @@
 //! The general fuzzy engine on emulated microcontrollers: the same bits as here, the same count for every input.
 
-use crate::machine::{Images, Machine, Time};
+use crate::machine::{Images, MACHINES, Machine, Time};
+use crate::page::{Page, compiler, grouped};
 use anyhow::ensure;
 use fuzzypilot::fuzzy::system::Controller;
 use replica::systems::{CURVED, MAMDANI, NUMBERS, TABLE, digest, inputs};
@@ -14,6 +15,63 @@ pub struct Cost {
     pub least: u32,
     /// Instructions.
     pub most: u32,
+}
+
+/// The table's place.
+const PAGE: Page = Page {
+    file: "docs/engine.md",
+    begin: "<!-- systems: written by `cargo systems --write` -->\n",
+    end: "<!-- systems end -->\n",
+    renew: "cargo systems --write",
+};
+
+/// Counts, prints, and compares with the page; or writes it.
+///
+/// # Errors
+///
+/// Bits that differ, a count that depends on the inputs, a table that is another one.
+pub fn run(write: bool) -> anyhow::Result<()> {
+    let images = Images::build()?;
+    let mut measured = Vec::new();
+    for machine in &MACHINES {
+        let costs = count(machine, &images)?;
+        for Cost {
+            system,
+            least,
+            most,
+        } in &costs
+        {
+            ensure!(
+                least == most,
+                "{}, {system}: {least} to {most} instructions, by the input",
+                machine.name
+            );
+        }
+        measured.push((machine.name, costs));
+    }
+    let table = table(&measured, &compiler()?);
+    println!("{table}");
+    PAGE.hold(&table, write)
+}
+
+/// The table for people: a row a system, a column a core. All cores have the same systems.
+fn table(measured: &[(&str, Vec<Cost>)], compiler: &str) -> String {
+    let mut table = "| one evaluation of a general system, instructions |".to_owned();
+    let mut rule = "|---|".to_owned();
+    for (core, _) in measured {
+        table += &format!(" {core} |");
+        rule += "--:|";
+    }
+    table += &format!("\n{rule}\n");
+    let systems = measured.first().map_or(&[][..], |(_, costs)| costs);
+    for (row, cost) in systems.iter().enumerate() {
+        table += &format!("| {} |", cost.system);
+        for (_, costs) in measured {
+            table += &format!(" {} |", grouped(costs[row].most));
+        }
+        table += "\n";
+    }
+    table + &format!("\nCounted in QEMU, the same for every input tried; {compiler}.\n")
 }
 
 /// Evaluates every system on one machine, and compares.
@@ -62,7 +120,7 @@ pub fn count(machine: &Machine, images: &Images) -> anyhow::Result<Vec<Cost>> {
     };
     one("2 inputs, 9 rules, height", here(&TABLE))?;
     one(
-        "3 inputs, curves, 6 rules, Takagi-Sugeno, 2 outputs",
+        "3 inputs, curves, 6 rules, Takagi–Sugeno, 2 outputs",
         here(&CURVED),
     )?;
     one(
@@ -84,4 +142,28 @@ fn here<const I: usize, const T: usize, const R: usize, const O: usize>(
             outputs.chain([digest(&evaluation.rules)]).collect()
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_a_system_and_a_column_a_core() {
+        let costs = |most| {
+            vec![Cost {
+                system: "small",
+                least: most,
+                most,
+            }]
+        };
+        let measured = [("Cortex-M4F", costs(2305)), ("Cortex-M0", costs(998))];
+        assert_eq!(
+            table(&measured, "rustc 1"),
+            "| one evaluation of a general system, instructions | Cortex-M4F | Cortex-M0 |\n\
+             |---|--:|--:|\n\
+             | small | 2,305 | 998 |\n\
+             \nCounted in QEMU, the same for every input tried; rustc 1.\n"
+        );
+    }
 }

@@ -19,8 +19,8 @@ pub struct ConvertArguments {
     /// What to write.
     #[arg(long, value_enum)]
     to: To,
-    /// Where to write it; without it, to standard output. C are two files: NAME.c, with NAME.h beside it, or a folder for
-    /// both.
+    /// Where to write it; without it, to standard output. C are two files: NAME.c, with NAME.h beside it (either name will do), or a
+    /// folder for both.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// The design file's format, whatever its extension says.
@@ -98,12 +98,37 @@ fn check(arguments: &ConvertArguments) -> Result<(), BadInput> {
     if arguments.adapt && is_code {
         return refused("--adapt", "--to fll or --to fcl");
     }
+    if arguments
+        .name
+        .as_deref()
+        .is_some_and(|name| name.trim().is_empty())
+    {
+        return Err(BadInput(
+            "--name: found nothing; allowed is a name with a letter or a digit".into(),
+        ));
+    }
     match &arguments.out {
         None if arguments.to == To::C => Err(BadInput(
             "--to c writes two files; --out says where: NAME.c, or a folder for both".into(),
         )),
-        _ => Ok(()),
+        Some(out) => not_the_input(arguments, out),
+        None => Ok(()),
     }
+}
+
+/// Refuses to write over the design itself: what its file says beside the model, such as comments, would be lost.
+fn not_the_input(arguments: &ConvertArguments, out: &Path) -> Result<(), BadInput> {
+    let same = match (out.canonicalize(), arguments.file.canonicalize()) {
+        (Ok(out), Ok(file)) => out == file,
+        _ => false,
+    };
+    if !same {
+        return Ok(());
+    }
+    let out = out.display();
+    Err(BadInput(format!(
+        "--out {out}: is the design that is read, its comments would be lost; allowed is another file"
+    )))
 }
 
 /// Writes it as a design file again.
@@ -159,7 +184,9 @@ pub fn unfit(file: &impl std::fmt::Display, why: &str) -> String {
 fn c(arguments: &ConvertArguments, design: &Design<'_>) -> anyhow::Result<()> {
     let out = arguments.out.as_deref().unwrap_or(Path::new("."));
     let source = match out.extension() {
-        Some(extension) if extension == "c" && !out.is_dir() => out.to_owned(),
+        Some(extension) if (extension == "c" || extension == "h") && !out.is_dir() => {
+            out.with_extension("c")
+        }
         _ => {
             check_folder(out)?;
             out.join(emit::c::file_stem(design.name))
@@ -167,8 +194,19 @@ fn c(arguments: &ConvertArguments, design: &Design<'_>) -> anyhow::Result<()> {
         }
     };
     let header = source.with_extension("h");
+    let stem = source.file_stem().unwrap_or_default().to_string_lossy();
+    if emit::c::shadows(&stem) {
+        return Err(BadInput(format!(
+            "--out {}: its header would be {stem}.h, which is one of C's; allowed is another name",
+            out.display()
+        ))
+        .into());
+    }
     let included = header.file_name().unwrap_or_default().to_string_lossy();
     let files = emit::c::write(design, &included);
+    for file in [&source, &header] {
+        not_the_input(arguments, file)?;
+    }
     if source.parent() == Some(out) {
         std::fs::create_dir_all(out)
             .with_context(|| format!("{}: cannot be made", out.display()))?;

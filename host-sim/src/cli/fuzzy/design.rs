@@ -35,6 +35,17 @@ impl Design {
         }
     }
 
+    /// What can be told apart of an output: a step of its fixed point; without one, a millionth of its range.
+    pub fn resolution(&self, output: usize) -> f64 {
+        let fixed = self.fixed.as_ref().ok();
+        match fixed.and_then(|fixed| fixed.tables().outputs.get(output)) {
+            Some(output) => output.format.value(1),
+            None => self.system.outputs.get(output).map_or(0.0, |output| {
+                1e-6 * (output.range.end() - output.range.start())
+            }),
+        }
+    }
+
     /// The system's own name, or its file's.
     pub fn title(&self) -> String {
         if self.system.name.is_empty() {

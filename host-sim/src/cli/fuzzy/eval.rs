@@ -64,9 +64,11 @@ fn at_point(design: &Design, point: &[f64]) -> anyhow::Result<()> {
     print(format_args!(
         "{} at {}\n",
         design.title(),
-        describe::point(system, point)
+        describe::given_point(system, point)
     ))?;
     print(format_args!("{}\n", inputs(design, point)))?;
+    let values: Vec<Option<f64>> = point.iter().copied().map(Some).collect();
+    print(outside(system, &values))?;
     print(format_args!(
         "{}\n",
         outputs(design, &exact, fixed.as_ref())
@@ -96,17 +98,40 @@ fn inputs(design: &Design, point: &[f64]) -> Table {
         };
         table.add_row([
             Cell::new(&input.name),
-            right(describe::number(value)),
+            right(describe::exact(value)),
             Cell::new(terms),
         ]);
     }
     table
 }
 
+/// A line for every value that lies outside its input's range.
+fn outside(system: &System, values: &[Option<f64>]) -> String {
+    let mut text = String::new();
+    for (input, value) in system.inputs.iter().zip(values) {
+        let Some(x) = value.filter(|x| !input.range.contains(x)) else {
+            continue;
+        };
+        let (start, end) = (*input.range.start(), *input.range.end());
+        let what = match input.clamp {
+            true => format!("it counts as {}", describe::exact(x.clamp(start, end))),
+            false => "the announced error does not hold there".to_owned(),
+        };
+        let [start, end] = [start, end].map(describe::exact);
+        text += &format!("{} lies outside {start} to {end}: {what}\n", input.name);
+    }
+    text
+}
+
 fn outputs(design: &Design, exact: &Evaluation, fixed: Option<&Evaluation>) -> Table {
     let mut table = table(["output", "f64", "fixed point", "difference"]);
-    let value = |x: Option<f64>| x.map_or("no rule fires".to_owned(), describe::number);
     for (index, output) in design.system.outputs.iter().enumerate() {
+        let resolution = design.resolution(index);
+        let value = |x: Option<f64>| {
+            x.map_or("no rule fires".to_owned(), |x| {
+                describe::number_to(x, resolution)
+            })
+        };
         let exact = exact.outputs.get(index).copied().flatten();
         let fixed = fixed.map(|fixed| fixed.outputs.get(index).copied().flatten());
         let difference = match (exact, fixed.flatten()) {
@@ -168,6 +193,7 @@ fn surface(design: &Design, held: &[Option<f64>], each: usize, csv: &Path) -> an
     let bytes = design.opened(|fixed| table_of(&design.system, fixed.as_ref(), &grid))?;
     put(csv, &bytes)?;
     print(format_args!("{}: rows: {}\n", csv.display(), grid.len()))?;
+    print(outside(&design.system, held))?;
     print(design.note())
 }
 

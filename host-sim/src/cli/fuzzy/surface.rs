@@ -2,14 +2,15 @@
 
 use super::design::Design;
 use super::named;
-use crate::cli::{BadInput, check_folder, print};
+use crate::cli::{BadInput, check_folder, print, put_all};
 use anyhow::Context;
 use clap::Args;
 use host_sim::fuzzy::evaluate::{Evaluator, Exact};
 use host_sim::fuzzy::picture;
-use host_sim::plot::{SurfaceSpec, curve_svg, membership_svg, surface_svg, write_pair};
+use host_sim::plot::{SurfaceSpec, curve_svg, membership_svg, pair, surface_svg};
 use host_sim::scenario::shown;
-use std::path::PathBuf;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub struct SurfaceArguments {
@@ -25,6 +26,9 @@ pub struct SurfaceArguments {
     #[arg(long, value_name = "NAME=VALUE")]
     hold: Vec<String>,
 }
+
+/// Names the picture of all terms, where an output's has its name.
+const MEMBERSHIPS: &str = "memberships";
 
 pub fn execute(arguments: &SurfaceArguments) -> anyhow::Result<()> {
     let design = Design::load(&arguments.design)?;
@@ -43,11 +47,9 @@ pub fn execute(arguments: &SurfaceArguments) -> anyhow::Result<()> {
     }
     let out = &arguments.out;
     check_folder(out)?;
-    std::fs::create_dir_all(out)
-        .with_context(|| format!("{}: cannot be created", out.display()))?;
     let stem = picture::file_name(&design.stem);
     let memberships = membership_svg(&design.title(), &picture::variables(system))?;
-    write_pair(out, &format!("{stem}-memberships"), &memberships)?;
+    let mut files = Vec::from(pair(&format!("{stem}-{MEMBERSHIPS}"), &memberships)?);
     let base: Vec<f64> = system
         .inputs
         .iter()
@@ -55,6 +57,7 @@ pub fn execute(arguments: &SurfaceArguments) -> anyhow::Result<()> {
         .map(|(input, held)| held.unwrap_or_else(|| named::middle(input)))
         .collect();
     let exact = Exact::new(system);
+    let mut taken = HashSet::from([MEMBERSHIPS.to_owned()]);
     for (index, output) in system.outputs.iter().enumerate() {
         let value = |free: &[(usize, f64)]| {
             let mut point = base.clone();
@@ -79,20 +82,30 @@ pub fn execute(arguments: &SurfaceArguments) -> anyhow::Result<()> {
                 curve_svg(&title, &input, &shown, &|x| value(&[(0, x)]))?
             }
         };
-        let name = picture::file_name(&output.name);
-        // Names that differ only in what a file name cannot hold stay apart.
-        let same = system.outputs[..index].iter();
-        let same = same
-            .filter(|before| picture::file_name(&before.name) == name)
-            .count();
-        let again = if same > 0 {
-            format!("-{}", same + 1)
-        } else {
-            String::new()
-        };
-        write_pair(out, &format!("{stem}-{name}{again}"), &svg)?;
+        let name = free(&picture::file_name(&output.name), &mut taken);
+        files.extend(pair(&format!("{stem}-{name}"), &svg)?);
     }
+    std::fs::create_dir_all(out)
+        .with_context(|| format!("{}: cannot be created", out.display()))?;
+    let files: Vec<_> = files
+        .iter()
+        .map(|(name, bytes)| (out.join(name), bytes))
+        .collect();
+    let files: Vec<(&Path, &[u8])> = files
+        .iter()
+        .map(|(file, bytes)| (file.as_path(), bytes.as_slice()))
+        .collect();
+    put_all(&files)?;
     print(format_args!("written: {}\n", out.display()))
+}
+
+/// The name, or the first with a number behind it that no picture has yet: some file systems hold `Out` and `out` for one.
+fn free(name: &str, taken: &mut HashSet<String>) -> String {
+    let numbered = (2..).map(|number| format!("{name}-{number}"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    names
+        .find(|name| taken.insert(name.to_lowercase()))
+        .unwrap_or_else(|| name.to_owned())
 }
 
 /// The inputs to draw over: two, or the only one.

@@ -40,8 +40,8 @@ tick, as a share of what the robot can; plus 10 a collision; plus 10 if the end 
 The design is the follower's (inputs phi and d, outputs speed and deflection, 25 rules: see designs/fine.fll); its quick \
 route reads even terms, so only the outputs move.
 
-Files in DIR: tuned.fll or tuned.fcl, tuned.rs (as convert makes it of that), report.json, memberships.svg and .png (before and after), state.json (after every \
-generation; --resume goes on from it: same result as without the break).
+Files in DIR: tuned.fll (tuned.fcl for an FCL design and for MATLAB's with centroids), tuned.rs (as convert makes it of that), report.json, memberships.svg and .png (before and after), state.json (after every \
+generation; --resume goes on from it: same result as without the break, but for the count of those known).
 
 Exit code: 0; 1 if something cannot be written; 2 if the input is at fault; 130 if interrupted (Ctrl-C: the state and the \
 best so far are written)."
@@ -75,6 +75,10 @@ pub struct TuneArguments {
     /// Do not move these: VARIABLE or VARIABLE.TERM. What they share with other terms stays, too.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     fix: Vec<String>,
+    /// Names that the result's format has not, such as those with blanks, become the nearest that it has; each change is
+    /// named. Data, --only and --fix use the design's own.
+    #[arg(long)]
+    adapt: bool,
     /// Seed of everything random. The result is the same on any number of cores.
     #[arg(long, default_value_t = 1, value_parser = whole(0, u64::MAX), allow_hyphen_values = true)]
     seed: u64,
@@ -101,10 +105,10 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         let file = arguments.design.file.display();
         return Err(BadInput(format!("{file}: no fixed point: {why}")).into());
     }
-    let written = Written::of(&arguments.design);
-    written
+    let written = Written::of(&arguments.design, system, arguments.adapt);
+    let (_, renamed, _) = written
         .text(system)
-        .map_err(|error| refused(&arguments.design.file, &error, false))?;
+        .map_err(|error| refused(&arguments.design.file, &error, arguments.adapt))?;
     let goal = Goal::load(arguments, system)?;
     let mut selection = Selection {
         only: named(system, "--only", &arguments.only)?,
@@ -115,7 +119,10 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         selection.fix.extend(inputs);
     }
     let question = Question {
-        design: Question::fingerprint(&format!("{:?}", system.clone().without_places())),
+        design: Question::fingerprint(&format!(
+            "{:?}",
+            system.clone().without_places().without_descriptions()
+        )),
         objective: goal.fingerprint(),
         moving: Question::fingerprint(&format!("{selection:?}")),
         seed: arguments.seed,
@@ -129,6 +136,9 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     };
     let out = &arguments.out;
     check_folder(out)?;
+    for change in renamed {
+        eprintln!("note: in the result {change}");
+    }
     ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed))
         .context("signals: cannot be handled")?;
     let movable = Movable::new(system, &selection);
@@ -198,6 +208,9 @@ fn command(arguments: &TuneArguments) -> String {
             let quote = if value.contains(' ') { "'" } else { "" };
             command += &format!(" --{option} {quote}{value}{quote}");
         }
+    }
+    if arguments.adapt {
+        command += " --adapt";
     }
     command
 }

@@ -31,6 +31,11 @@ pub fn file_stem(name: &str) -> String {
     prefix(name)
 }
 
+/// Whether a header of this name, without `.h`, would take the place of one of C's or POSIX's.
+pub fn shadows(stem: &str) -> bool {
+    HEADERS.contains(&stem)
+}
+
 /// Macros and constants of every header, without the controller's name.
 const OWN: [&str; 7] = [
     "h", "inputs", "outputs", "terms", "rules", "full", "evaluate",
@@ -74,8 +79,58 @@ impl Names {
     }
 }
 
+/// Headers of C and POSIX whose names one word can be: a header of the same name would take their place where it lies in an
+/// include path. `stdint.h` is among those that ours needs itself.
+const HEADERS: [&str; 43] = [
+    "assert",
+    "complex",
+    "ctype",
+    "dirent",
+    "dlfcn",
+    "errno",
+    "fcntl",
+    "fenv",
+    "float",
+    "grp",
+    "inttypes",
+    "iso646",
+    "limits",
+    "locale",
+    "malloc",
+    "math",
+    "memory",
+    "poll",
+    "pthread",
+    "pwd",
+    "sched",
+    "semaphore",
+    "setjmp",
+    "signal",
+    "stdalign",
+    "stdarg",
+    "stdatomic",
+    "stdbool",
+    "stddef",
+    "stdint",
+    "stdio",
+    "stdlib",
+    "stdnoreturn",
+    "string",
+    "strings",
+    "tgmath",
+    "threads",
+    "time",
+    "uchar",
+    "unistd",
+    "utime",
+    "wchar",
+    "wctype",
+];
 fn prefix(name: &str) -> String {
     let name = identifier(name, "fuzzy", 0);
+    if shadows(&name) {
+        return format!("fuzzy_{name}");
+    }
     // `INT32_MAX` is not ours, whatever a variable is called.
     let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
     if STANDARD.contains(&bare) {

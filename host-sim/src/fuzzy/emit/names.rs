@@ -22,13 +22,22 @@ impl Taken {
 
     /// The name, or the first free one with a number behind it. `derived` are endings with which it must be free, too.
     pub fn claim(&mut self, wanted: &str, derived: &[&str]) -> String {
+        self.numbered(wanted, "_", derived)
+    }
+
+    /// The same for a type of Rust, whose name has no underscore.
+    pub fn claim_type(&mut self, wanted: &str) -> String {
+        self.numbered(wanted, "", &[])
+    }
+
+    fn numbered(&mut self, wanted: &str, joint: &str, derived: &[&str]) -> String {
         let free = |name: &String| {
             !self.0.contains(name)
                 && derived
                     .iter()
                     .all(|ending| !self.0.contains(&format!("{name}{ending}")))
         };
-        let numbered = (2..).map(|n| format!("{wanted}_{n}"));
+        let numbered = (2..).map(|n| format!("{wanted}{joint}{n}"));
         let name = std::iter::once(wanted.to_owned())
             .chain(numbered)
             .find(free)

@@ -110,7 +110,12 @@ pub fn recognise(system: &System, lowered: &Lowered) -> Result<RuleBase, String>
     let tables = lowered.tables();
     let [rows, columns] = tables.inputs.as_slice() else {
         return Err(format!(
-            "it takes 2 inputs, and there are {}",
+            "it takes 2 inputs, and there {} {}",
+            if tables.inputs.len() == 1 {
+                "is"
+            } else {
+                "are"
+            },
             tables.inputs.len()
         ));
     };

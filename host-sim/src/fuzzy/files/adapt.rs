@@ -8,16 +8,22 @@ use std::collections::HashSet;
 
 /// For [`fll::write`]; gives what was changed.
 pub fn to_fll(system: &mut System) -> Vec<String> {
+    let mut changes = names_to_fll(system);
+    middles(system, &mut changes);
+    changes
+}
+
+/// The names alone, for [`fll::write`]: what the system computes stays. Gives what was changed.
+pub fn names_to_fll(system: &mut System) -> Vec<String> {
     let mut changes = names(system, fll::RESERVED_NAMES);
     one_line(&mut system.name, "engine", &mut changes);
     for block in &mut system.blocks {
         one_line(&mut block.name, "rule block", &mut changes);
     }
-    middles(system, &mut changes);
     changes
 }
 
-/// For [`fcl::write`]; gives what was changed.
+/// For [`fcl::write`]; names are all that it changes. Gives what was changed.
 pub fn to_fcl(system: &mut System) -> Vec<String> {
     let mut changes = names(system, fcl::RESERVED_NAMES);
     let mut word = |name: &mut String, what: &str| {

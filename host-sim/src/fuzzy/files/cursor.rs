@@ -49,7 +49,7 @@ impl<'s, 't> Cursor<'s, 't> {
                 let (opening, closing) = closing(token.text);
                 let found = format!("`{opening}` opens what is never closed");
                 let allowed = match closing {
-                    "'" => "`'` at its end, on the same line".to_owned(),
+                    quote @ ("'" | "\"") => format!("`{quote}` at its end, on the same line"),
                     _ => format!("`{closing}` somewhere behind it"),
                 };
                 return self.source.error(token.place, found, allowed);
@@ -205,6 +205,7 @@ fn closing(text: &str) -> (&'static str, &'static str) {
     match text.as_bytes() {
         [b'(', ..] => ("(*", "*)"),
         [b'/', ..] => ("/*", "*/"),
+        [b'"', ..] => ("\"", "\""),
         _ => ("'", "'"),
     }
 }

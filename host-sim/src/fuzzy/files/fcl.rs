@@ -30,7 +30,7 @@ const DIALECT: Dialect = Dialect {
     signs: &[":=", "..", "(", ")", ",", ":", ";"],
     line_comments: &["//"],
     block_comments: &[("(*", "*)"), ("/*", "*/")],
-    quotes: false,
+    quotes: &[],
 };
 
 const GRAMMAR: Grammar = Grammar {

@@ -1,5 +1,5 @@
 //! MATLAB's fuzzy inference systems, `.fis`: sections of `key=value` lines, and rules of numbers. Octave's and FuzzyLite's
-//! files are read as well.
+//! files are read as well: texts may stand between double quotes, the type may be in capitals, a rule may end with `;`.
 //!
 //! What the format leaves unsaid and MATLAB does: a centroid takes 101 samples from end to end of the range; an output
 //! that no rule reaches has the middle of its range; neither inputs nor outputs are limited to their ranges; a Sugeno
@@ -21,10 +21,10 @@ use settings::Settings;
 use variable::Variable;
 
 const DIALECT: Dialect = Dialect {
-    signs: &["[", "]", "(", ")", ",", ":", "="],
+    signs: &["[", "]", "(", ")", ",", ":", "=", ";"],
     line_comments: &["%", "#"],
     block_comments: &[],
-    quotes: true,
+    quotes: &['\'', '"'],
 };
 
 /// Reads a system.
@@ -138,11 +138,13 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
         .used(source, "ImpMethod", set, "'min' or 'prod'")?;
     let system = System {
         name: settings.name,
+        description: String::new(),
         inputs,
         outputs,
         blocks: vec![RuleBlock {
             // The format has one block and no name for it; other formats ask for one.
             name: "rules".to_owned(),
+            description: String::new(),
             and: and.unwrap_or(Conjunction::Min),
             implication: implication.unwrap_or(Conjunction::Min),
             rules: all,

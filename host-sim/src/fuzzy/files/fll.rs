@@ -23,7 +23,7 @@ const DIALECT: Dialect = Dialect {
     signs: &["(", ")"],
     line_comments: &["#"],
     block_comments: &[],
-    quotes: false,
+    quotes: &[],
 };
 
 /// Words that no name may be.
@@ -69,6 +69,7 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
     let components = components(source)?;
     let mut system = System {
         name: String::new(),
+        description: String::new(),
         inputs: Vec::new(),
         outputs: Vec::new(),
         blocks: Vec::new(),
@@ -81,6 +82,7 @@ pub fn read(source: Source<'_>) -> Result<System, ReadError> {
             "Engine" if i == 0 => {
                 reader.keys(&["description"])?;
                 system.name = component.head.value.trim().to_owned();
+                system.description = reader.description();
             }
             "Engine" => {
                 let found = "a second `Engine`";
@@ -241,6 +243,11 @@ impl<'s> Component<'s, '_> {
             }
         }
         Ok(())
+    }
+
+    fn description(self) -> String {
+        self.property("description")
+            .map_or_else(String::new, |property| property.value.to_owned())
     }
 
     fn property(self, key: &str) -> Option<Property<'s>> {

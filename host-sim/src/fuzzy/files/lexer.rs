@@ -17,8 +17,8 @@ pub struct Dialect {
     pub line_comments: &'static [&'static str],
     /// Open and close a comment.
     pub block_comments: &'static [(&'static str, &'static str)],
-    /// Whether texts stand between single quotes.
-    pub quotes: bool,
+    /// What stands on both sides of a text.
+    pub quotes: &'static [char],
 }
 
 /// A piece of a text.
@@ -123,11 +123,15 @@ fn comment<'s>(dialect: &Dialect) -> impl Parser<&'s str, Piece<'s>, EmptyError>
 
 fn quoted<'s>(dialect: &Dialect) -> impl Parser<&'s str, Piece<'s>, EmptyError> {
     move |input: &mut &'s str| {
-        if !dialect.quotes || !input.starts_with('\'') {
+        let Some(&quote) = dialect
+            .quotes
+            .iter()
+            .find(|&&quote| input.starts_with(quote))
+        else {
             return fail.parse_next(input);
-        }
+        };
         alt((
-            delimited('\'', take_till(0.., ['\'', '\n', '\r']), '\'')
+            delimited(quote, take_till(0.., [quote, '\n', '\r']), quote)
                 .map(|text| Piece::Token(Kind::Text, text)),
             unclosed,
         ))
@@ -170,7 +174,7 @@ fn run<'s>(dialect: &Dialect) -> impl Parser<&'s str, Piece<'s>, EmptyError> {
 impl Dialect {
     fn breaks(&self, c: char, rest: &str) -> bool {
         c.is_whitespace()
-            || (self.quotes && c == '\'')
+            || self.quotes.contains(&c)
             || self.signs.iter().any(|s| rest.starts_with(s))
             || self.line_comments.iter().any(|s| rest.starts_with(s))
             || self.block_comments.iter().any(|(s, _)| rest.starts_with(s))

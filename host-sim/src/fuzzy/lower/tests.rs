@@ -132,8 +132,10 @@ fn small() -> System {
     };
     System {
         name: "small".into(),
+        description: String::new(),
         inputs: vec![Input {
             name: "heat".into(),
+            description: String::new(),
             range: 0.0..=10.0,
             clamp: true,
             terms: vec![
@@ -156,6 +158,7 @@ fn small() -> System {
         }],
         outputs: vec![Output {
             name: "fan".into(),
+            description: String::new(),
             range: 0.0..=100.0,
             clamp: true,
             default: None,
@@ -175,6 +178,7 @@ fn small() -> System {
         }],
         blocks: vec![RuleBlock {
             name: String::new(),
+            description: String::new(),
             and: Conjunction::Min,
             implication: Conjunction::Min,
             rules: vec![rule(0, 0), rule(1, 1)],

@@ -12,7 +12,7 @@
 //! |---|---|---|---|---|
 //! | input `phi` | 2^-16 | 0 = 0 | 11796480 = 180 | counts as the outermost term |
 //! | input `d` | 2^-16 | 0 = 0 | 262144 = 4 | counts as the outermost term |
-//! | output `speed` | 2^-25 | 13422592 = 0.400024 | 87240704 = 2.59998 | never |
+//! | output `speed` | 2^-25 | 13422592 = 0.4000244140625 | 87240704 = 2.5999755859375 | never |
 //! | output `deflection` | 2^-20 | 0 = 0 | 94371840 = 90 | never |
 //!
 //! It is off the same design in exact arithmetic by at most

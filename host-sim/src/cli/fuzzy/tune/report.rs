@@ -6,7 +6,7 @@ use crate::cli::fuzzy::table::{right, table};
 use anyhow::Context;
 use comfy_table::Cell;
 use host_sim::driving::{Drive, Driving};
-use host_sim::fuzzy::describe::number;
+use host_sim::fuzzy::describe::{number, number_to};
 use host_sim::fuzzy::lower::lower;
 use host_sim::fuzzy::model::System;
 use host_sim::fuzzy::tune::data::Data;
@@ -165,8 +165,14 @@ impl Display for Report {
         }
         let mut changed = table(["changed", "before", "after"]);
         for change in &self.changed {
+            let pairs = change.before.iter().zip(&change.after);
+            let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // So that both sides of a small step of a large number read differently.
             let list = |numbers: &[f64]| {
-                let texts: Vec<String> = numbers.iter().map(|x| number(*x)).collect();
+                let texts: Vec<String> = numbers
+                    .iter()
+                    .map(|x| number_to(*x, 0.01 * moved))
+                    .collect();
                 texts.join(" ")
             };
             changed.add_row([

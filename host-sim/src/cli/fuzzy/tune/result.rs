@@ -9,40 +9,75 @@ use anyhow::{Context, anyhow, bail};
 use host_sim::fuzzy::check::bounds;
 use host_sim::fuzzy::emit::{self, rust};
 use host_sim::fuzzy::files::writing::WriteError;
-use host_sim::fuzzy::files::{Format, fcl, fll, parse};
+use host_sim::fuzzy::files::{Format, adapt, fcl, fll, parse};
 use host_sim::fuzzy::lower::lower;
-use host_sim::fuzzy::model::System;
+use host_sim::fuzzy::model::{Defuzzifier, Output, Sampling, System};
 use host_sim::fuzzy::picture;
-use host_sim::plot::{membership_svg, write_pair};
+use host_sim::plot::{membership_svg, pair};
 use std::path::Path;
 
-/// The format that the result is written in: the design's own, FuzzyLite's where that cannot be written.
-pub struct Written(Format);
+/// The format that the result is written in, one that can say what the design computes.
+#[derive(Clone, Copy)]
+enum Language {
+    Fll,
+    Fcl,
+}
+
+/// How the result is written.
+pub struct Written {
+    language: Language,
+    /// Whether names that the language has not become the nearest that it has.
+    adapt: bool,
+}
 
 impl Written {
-    /// For a design.
-    pub fn of(design: &DesignArguments) -> Self {
+    /// For a design: its own format; of MATLAB's, which is not written, FCL where a centroid is sampled from end to end, for
+    /// FLL cannot say that, and FLL otherwise, for FCL has no linear terms. No design has both.
+    pub fn of(design: &DesignArguments, system: &System, adapt: bool) -> Self {
+        let ends = |output: &Output| {
+            let sampling = match output.defuzzifier {
+                Defuzzifier::Centroid { sampling, .. } => Some(sampling),
+                Defuzzifier::WeightedAverage => None,
+            };
+            sampling == Some(Sampling::Ends)
+        };
         let from = design.from.map(super::super::From::format);
-        match from.or_else(|| Format::of(&design.file)) {
-            Some(Format::Fcl) => Self(Format::Fcl),
-            _ => Self(Format::Fll),
+        let language = match from.or_else(|| Format::of(&design.file)) {
+            Some(Format::Fcl) => Language::Fcl,
+            Some(Format::Fis) if system.outputs.iter().any(ends) => Language::Fcl,
+            _ => Language::Fll,
+        };
+        Self { language, adapt }
+    }
+
+    fn format(&self) -> Format {
+        match self.language {
+            Language::Fll => Format::Fll,
+            Language::Fcl => Format::Fcl,
         }
     }
 
     /// What begins a comment.
     fn comment(&self) -> &'static str {
-        match self.0 {
-            Format::Fcl => "//",
-            Format::Fll | Format::Fis => "#",
+        match self.language {
+            Language::Fcl => "//",
+            Language::Fll => "#",
         }
     }
 
-    /// A design as text.
-    pub fn text(&self, system: &System) -> Result<String, WriteError> {
-        match self.0 {
-            Format::Fcl => fcl::write(system),
-            Format::Fll | Format::Fis => fll::write(system),
-        }
+    /// A design as it is written, which names are changed for that, and the text.
+    pub fn text(&self, system: &System) -> Result<(System, Vec<String>, String), WriteError> {
+        let mut system = system.clone();
+        let changes = match (self.adapt, self.language) {
+            (false, _) => Vec::new(),
+            (true, Language::Fcl) => adapt::to_fcl(&mut system),
+            (true, Language::Fll) => adapt::names_to_fll(&mut system),
+        };
+        let text = match self.language {
+            Language::Fcl => fcl::write(&system),
+            Language::Fll => fll::write(&system),
+        }?;
+        Ok((system, changes, text))
     }
 
     /// Writes everything, after a last look at the result: it reads back as what was judged, and every check accepts it.
@@ -55,30 +90,27 @@ impl Written {
         report: &Report,
         how: &str,
     ) -> anyhow::Result<()> {
-        let name = format!("tuned.{}", self.0.extension());
-        let text = format!(
-            "{} {}: {how}\n{}",
-            self.comment(),
-            design.title(),
-            self.text(tuned)?
-        );
-        let again = parse(&name, text.as_bytes(), self.0)?;
-        if again.without_places() != tuned.clone().without_places() {
+        let name = format!("tuned.{}", self.format().extension());
+        let (said, _, text) = self.text(tuned)?;
+        let text = format!("{} {}: {how}\n{text}", self.comment(), design.title());
+        let again = parse(&name, text.as_bytes(), self.format())?;
+        let computed = |system: &System| system.clone().without_places().without_descriptions();
+        if computed(&again) != computed(&said) {
             bail!("{name}: reads back as another design than was judged; nothing of it is written");
         }
-        let lowered = lower(tuned).with_context(|| format!("{name}: refused by the checks"))?;
+        let lowered = lower(&said).with_context(|| format!("{name}: refused by the checks"))?;
         // As convert makes it of the design beside it.
         let module = rust::write(
             &emit::Design {
-                system: tuned,
+                system: &said,
                 lowered: &lowered,
-                name: if tuned.name.is_empty() {
+                name: if said.name.is_empty() {
                     "tuned"
                 } else {
-                    &tuned.name
+                    &said.name
                 },
                 command: &format!("host-sim fuzzy convert {name} --to rust"),
-                bounds: Some(&bounds(tuned, &lowered)),
+                bounds: Some(&bounds(&said, &lowered)),
             },
             rust::Route::Auto,
         )
@@ -96,11 +128,13 @@ impl Written {
         let svg = membership_svg(&format!("{}, tuned", design.title()), &shown)?;
         std::fs::create_dir_all(out)
             .with_context(|| format!("{}: cannot be created", out.display()))?;
+        let [(svg_name, svg), (png_name, png)] = pair("memberships", &svg)?;
         put_all(&[
             (&out.join(name), text.as_bytes()),
             (&out.join("tuned.rs"), module.as_bytes()),
             (&out.join("report.json"), &json(report)?),
-        ])?;
-        write_pair(out, "memberships", &svg)
+            (&out.join(svg_name), &svg),
+            (&out.join(png_name), &png),
+        ])
     }
 }

@@ -4,7 +4,7 @@ use super::super::Design;
 use super::super::words::{count, plain};
 use super::{Names, source};
 use crate::fuzzy::check::STRENGTHS;
-use crate::fuzzy::describe::number;
+use crate::fuzzy::describe::{exact, number};
 use crate::fuzzy::lower::Format;
 use fuzzypilot::fuzzy::system::LIMIT;
 use std::fmt::Write;
@@ -101,7 +101,7 @@ pub fn text(design: &Design<'_>, names: &Names) -> String {
         let _ = writeln!(
             text,
             "/* Where no rule fires: {}. */\n#define {} {}",
-            number(output.format.value(output.default)),
+            exact(output.format.value(output.default)),
             names.shout(&format!("{}_default", variable.name)),
             source::constant(output.default)
         );
@@ -151,8 +151,8 @@ pub fn error(design: &Design<'_>) -> String {
 fn range([low, high]: [i32; 2], format: Format) -> String {
     format!(
         "{} to {}",
-        number(format.value(low)),
-        number(format.value(high))
+        exact(format.value(low)),
+        exact(format.value(high))
     )
 }
 

@@ -193,7 +193,7 @@ impl<'a> Writer<'a> {
                 shout(name)
             );
         }
-        let format = types.claim(&format!("{}Table", names.name.to_upper_camel_case()), &[]);
+        let format = types.claim_type(&format!("{}Table", names.name.to_upper_camel_case()));
         let _ = write!(
             text,
             "/// `{of}` in the table.\ntype {format} = fixed::FixedI16<fixed::types::extra::U{}>;\n\n",

@@ -3,7 +3,7 @@
 use super::super::words::{count, plain};
 use super::super::{Design, names};
 use super::{FRACTION, shout};
-use crate::fuzzy::describe::number;
+use crate::fuzzy::describe::exact;
 use heck::ToUpperCamelCase;
 use std::fmt::Write;
 
@@ -47,7 +47,7 @@ pub fn head(
     for signal in signals {
         let value = |steps: i32| {
             let value = f64::from(steps) * f64::from(-signal.fraction).exp2();
-            format!("{} = {}", steps, number(value))
+            format!("{} = {}", steps, exact(value))
         };
         let [from, to] = signal.range;
         // Writing to a text cannot fail.
@@ -93,7 +93,7 @@ pub fn signals(text: &mut String, signals: &[Signal<'_>], types: &mut names::Tak
             signal.fraction
         );
         if (0..=31).contains(&signal.fraction) {
-            let camel = types.claim(&signal.identifier.to_upper_camel_case(), &[]);
+            let camel = types.claim_type(&signal.identifier.to_upper_camel_case());
             let _ = write!(
                 text,
                 "/// `{of}` as a number: `to_bits` gives its steps, `from_bits` takes them.\n\

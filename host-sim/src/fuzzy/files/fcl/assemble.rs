@@ -53,6 +53,7 @@ impl Reader<'_, '_> {
                 merges.push(block.merge);
                 outputs.push(Output {
                     name: name.text.to_owned(),
+                    description: String::new(),
                     range,
                     clamp: block.variable.clamp,
                     default: block.default,
@@ -66,6 +67,7 @@ impl Reader<'_, '_> {
                 let block = fuzzified.swap_remove(at.ok_or_else(missing)?);
                 inputs.push(Input {
                     name: name.text.to_owned(),
+                    description: String::new(),
                     range: block.range(source, declared.range)?,
                     clamp: block.clamp,
                     terms: block.input_terms(),
@@ -95,6 +97,7 @@ impl Reader<'_, '_> {
         checks::rules(source, &blocks, end)?;
         Ok(System {
             name: self.name,
+            description: String::new(),
             inputs,
             outputs,
             blocks,
@@ -245,6 +248,7 @@ impl WrittenBlock<'_> {
             .map(|rule| rule.resolve(source, names, and));
         Ok(RuleBlock {
             name: self.name.to_owned(),
+            description: String::new(),
             and,
             implication: self.implication,
             rules: rules.collect::<Result<_, _>>()?,

@@ -15,12 +15,13 @@ const STYLE: RuleStyle = RuleStyle {
     mark_and: true,
 };
 
-/// Writes a system, which keeps the model's promises.
+/// Writes a system, which keeps the model's promises. Descriptions, which the language has not, stand as comments.
 pub fn write(system: &System) -> Result<String, WriteError> {
     check(system, "FCL", RESERVED_NAMES)?;
     word(&system.name, "function block")?;
     let mut text = Lines::default();
     text.head("FUNCTION_BLOCK", &system.name);
+    text.comment(&system.description);
     text.head("VAR_INPUT", "");
     for input in &system.inputs {
         text.line(
@@ -36,6 +37,7 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     text.line(0, "END_VAR");
     for input in &system.inputs {
         text.head("FUZZIFY", &input.name);
+        text.comment(&input.description);
         if input.clamp {
             text.line(1, "LOCK : RANGE;");
         }
@@ -67,6 +69,7 @@ fn rule_block(
 ) -> Result<(), WriteError> {
     word(&block.name, "rule block")?;
     text.head("RULEBLOCK", &block.name);
+    text.comment(&block.description);
     text.line(1, &format!("AND : {};", conjunction(block.and)));
     text.line(1, "OR : MAX;");
     text.line(1, &format!("ACT : {};", conjunction(block.implication)));
@@ -85,6 +88,7 @@ fn rule_block(
 
 fn defuzzify(text: &mut Lines, output: &Output, merge: bool) -> Result<(), WriteError> {
     text.head("DEFUZZIFY", &output.name);
+    text.comment(&output.description);
     text.line(1, &range(&output.range));
     if output.clamp {
         text.line(1, "LOCK : RANGE;");
@@ -123,6 +127,14 @@ impl Lines {
         self.0 += &"  ".repeat(indent);
         self.0 += text;
         self.0.push('\n');
+    }
+
+    /// A description, if there is one, on a line of its own.
+    fn comment(&mut self, description: &str) {
+        let plain = description.replace(char::is_control, " ");
+        if !plain.trim().is_empty() {
+            self.line(1, &format!("// {}", plain.trim()));
+        }
     }
 
     /// The first line of a part, with a name that may be empty; a blank line before it.

@@ -73,6 +73,7 @@ impl<'s> Rules<'s, '_> {
                     return Err(source.error(connection.place, found, "1 (AND) or 2 (OR)"));
                 }
             };
+            cursor.eat_sign(";");
             let antecedent = match (propositions.len(), and) {
                 (0, _) => {
                     let found = "this rule asks no input";

@@ -62,11 +62,12 @@ impl<'s> Settings<'s> {
                     "Name" => settings.name = text(cursor, "a name")?.text.to_owned(),
                     "Type" => {
                         let kind = text(cursor, "a type")?;
-                        settings.sugeno = match kind.text {
+                        settings.sugeno = match kind.text.to_ascii_lowercase().as_str() {
                             "mamdani" => false,
                             "sugeno" | "takagi-sugeno" => true,
-                            other => {
-                                let found = format!("the type {} is not supported", quoted(other));
+                            _ => {
+                                let found =
+                                    format!("the type {} is not supported", quoted(kind.text));
                                 return Err(source.error(
                                     kind.place,
                                     found,

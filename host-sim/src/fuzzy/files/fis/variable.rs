@@ -71,6 +71,7 @@ impl<'s> Variable<'s, '_> {
             });
         Ok(Input {
             name: common.name.text.to_owned(),
+            description: String::new(),
             range: common.range,
             clamp: false,
             terms: terms.collect(),
@@ -90,6 +91,7 @@ impl<'s> Variable<'s, '_> {
             });
         Ok(Output {
             name: common.name.text.to_owned(),
+            description: String::new(),
             default: Some(common.range.start() + (common.range.end() - common.range.start()) / 2.0),
             range: common.range,
             clamp: false,

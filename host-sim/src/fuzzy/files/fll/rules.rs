@@ -35,6 +35,7 @@ const CONJUNCTIONS: &[(&str, Conjunction)] = &[
 
 pub(super) struct WrittenBlock<'s> {
     name: &'s str,
+    description: String,
     and: Norm<'s, Conjunction>,
     or: Norm<'s, ()>,
     implication: Norm<'s, Conjunction>,
@@ -80,6 +81,7 @@ impl<'s> Component<'s, '_> {
         }
         let block = WrittenBlock {
             name: self.component.head.value,
+            description: self.description(),
             and: self.norm("conjunction", CONJUNCTIONS, OTHER_CONJUNCTIONS)?,
             or: self.norm("disjunction", &[("Maximum", ())], OTHER_DISJUNCTIONS)?,
             implication: self.norm("implication", CONJUNCTIONS, OTHER_CONJUNCTIONS)?,
@@ -144,6 +146,7 @@ impl WrittenBlock<'_> {
             .used(source, "implication", set, ALLOWED_AND)?;
         Ok(RuleBlock {
             name: self.name.to_owned(),
+            description: self.description.clone(),
             and,
             implication: implication.unwrap_or(Conjunction::Min),
             rules,

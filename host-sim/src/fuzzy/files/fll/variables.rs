@@ -79,6 +79,7 @@ impl<'s> Component<'s, '_> {
         }
         Ok(Input {
             name: name.text.to_owned(),
+            description: self.description(),
             range: self.range()?,
             clamp: self.flag("lock-range", false)?,
             terms,
@@ -128,6 +129,7 @@ impl<'s> Component<'s, '_> {
         let terms = self.terms(true)?;
         Ok(Output {
             name: name.text.to_owned(),
+            description: self.description(),
             range: self.range()?,
             clamp: self.flag("lock-range", false)?,
             default,

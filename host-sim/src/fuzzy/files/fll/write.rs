@@ -20,8 +20,10 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     check(system, "FLL", RESERVED_NAMES)?;
     let mut text = String::new();
     line(&mut text, "", "Engine", &free(&system.name, "engine")?);
+    description(&mut text, &system.description);
     for input in &system.inputs {
         line(&mut text, "", "InputVariable", &input.name);
+        description(&mut text, &input.description);
         variable(&mut text, &input.range, input.clamp);
         for term in &input.terms {
             shape(&mut text, &term.name, &term.shape);
@@ -29,6 +31,7 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     }
     for output in &system.outputs {
         line(&mut text, "", "OutputVariable", &output.name);
+        description(&mut text, &output.description);
         variable(&mut text, &output.range, output.clamp);
         line(
             &mut text,
@@ -81,6 +84,7 @@ pub fn write(system: &System) -> Result<String, WriteError> {
             "RuleBlock",
             &free(&block.name, "rule block")?,
         );
+        description(&mut text, &block.description);
         line(&mut text, "  ", "enabled", "true");
         line(&mut text, "  ", "conjunction", conjunction(block.and));
         line(&mut text, "  ", "disjunction", "Maximum");
@@ -102,6 +106,14 @@ fn line(text: &mut String, indent: &str, key: &str, value: &str) {
     let blank = if value.is_empty() { "" } else { " " };
     // Writing to a text cannot fail.
     let _ = writeln!(text, "{indent}{key}:{blank}{value}");
+}
+
+/// A description, if there is one, as a line can hold it.
+fn description(text: &mut String, description: &str) {
+    let plain = description.replace(|c: char| c == '#' || (c.is_control() && c != '\t'), " ");
+    if !plain.trim().is_empty() {
+        line(text, "  ", "description", plain.trim());
+    }
 }
 
 fn variable(text: &mut String, range: &RangeInclusive<f64>, clamp: bool) {
