@@ -1,7 +1,7 @@
 //! An input's range in pieces: in each, every one of its terms is there or not, and full or not.
 
 use super::Stretch;
-use crate::fuzzy::model::Input;
+use crate::fuzzy::model::{Input, Shape};
 use std::ops::Range;
 
 /// The pieces of one input, and which terms hold in them.
@@ -22,7 +22,7 @@ impl Axis {
     pub fn new(input: &Input) -> Self {
         let (start, end) = (*input.range.start(), *input.range.end());
         let shapes = || input.terms.iter().map(|term| &term.shape);
-        let mut knots: Vec<f64> = shapes().flat_map(|shape| shape.knots()).collect();
+        let mut knots: Vec<f64> = shapes().flat_map(Shape::knots).collect();
         knots.retain(|x| (start..=end).contains(x));
         knots.extend([start, end]);
         knots.sort_by(f64::total_cmp);
