@@ -402,9 +402,13 @@ fn an_output(dice: &mut Dice, inputs: usize) -> AnOutput {
             _ => dice.below(32_769) as u16,
         };
         let set = |dice: &mut Dice| {
-            (0..samples)
-                .map(|_| Grade::from_bits(grade(dice)))
-                .collect()
+            let grades = (0..samples).map(|_| Grade::from_bits(grade(dice)));
+            let mut set: Vec<Grade> = grades.collect();
+            // What rules conclude is not empty.
+            if set.iter().all(|&grade| grade == Grade::ZERO) {
+                set[0] = Grade::ONE;
+            }
+            set
         };
         let made = if middles {
             Samples::middles(range, samples)
@@ -1021,11 +1025,21 @@ fn every_flaw_is_found() {
         of_output(centroid(&[WHOLE], [0, q("11")])),
         Flaw::SampleRange { output: 1 }
     );
-    let nothing = Output {
-        complete: true,
-        ..centroid(&[&[Grade::ZERO; 3]], [0, 9])
+    // A set of nothing is a flaw where a rule concludes it, whether the output claims to be complete or not.
+    const NOTHING: &[Grade] = &[Grade::ZERO; 3];
+    let sets = centroid(&[WHOLE, NOTHING], [0, 9]);
+    let concluding = |term: u8, weight: Degree| {
+        let then = [(1, term)];
+        let rule = Rule::new(&[&[Is(0, 0)]], &then).weighted(weight);
+        let rules = [good_rules[0], rule];
+        System::checked(&[good_input], &[Block::min(&rules)], &[good_output, sets]).map(|_| ())
     };
-    assert_eq!(of_output(nothing), Flaw::EmptySet { output: 1, term: 0 });
+    assert_eq!(
+        concluding(1, Degree::ONE),
+        Err(Flaw::EmptySet { output: 1, term: 1 })
+    );
+    assert_eq!(concluding(1, Degree::ZERO), Ok(()));
+    assert_eq!(concluding(0, Degree::ONE), Ok(()));
     assert_eq!(
         of_output(Output {
             complete: true,

@@ -26,6 +26,7 @@
 //! | points ascend and pieces meet | [`Flaw::Pieces`] |
 //! | rules ask for and conclude what there is | [`Flaw::UnknownTerm`] and its like |
 //! | outputs stay in their ranges: what is concluded does, or the output is limited | [`Flaw::OutOfRange`], [`Flaw::SampleRange`], [`Flaw::Default`] |
+//! | every set that a rule concludes is something at one of the samples | [`Flaw::EmptySet`] |
 //! | sums cannot overflow, whatever fires | [`Flaw::Accumulator`] |
 //! | division by zero cannot happen | by construction: where Σ w is zero the default holds |
 //! | the work does not depend on the inputs | by construction; instructions are counted on three cores |

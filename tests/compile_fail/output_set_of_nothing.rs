@@ -1,4 +1,4 @@
-//! Sets of a complete output are not empty.
+//! Sets that rules conclude are not empty, whether the output claims to be complete or not.
 use fuzzypilot::fuzzy::Grade;
 use fuzzypilot::fuzzy::system::shape::ramp;
 use fuzzypilot::fuzzy::system::{
@@ -15,7 +15,7 @@ pub static SYSTEM: System = System::new(
         range: [0, 100],
         clamp: false,
         default: 0,
-        complete: true,
+        complete: false,
         defuzzifier: Defuzzifier::Centroid {
             merge: Merge::Sum,
             samples: Samples::ends([0, 100], 4),

@@ -5,44 +5,75 @@
 //! fixed point on a dense [`Grid`].
 
 mod accuracy;
+mod beyond;
 mod bound;
 mod coverage;
 mod dominance;
 mod grid;
 mod jumps;
+mod ripples;
+mod sampled;
+mod sweep;
 mod turns;
+mod watch;
 
 pub use accuracy::{Accuracy, Class, STRENGTHS, class, strength};
+pub use beyond::{Beyond, beyond};
 pub use bound::{Bounds, bounds};
-pub use coverage::{Coverage, Gap, Stretch, coverage};
+pub use coverage::{Coverage, Gap, MOST_WORK, Stretch, bare, coverage, outside};
 pub use dominance::Dominance;
 pub use grid::{Grid, POINTS};
 pub use jumps::Jumps;
-pub use turns::{Turn, turns};
+pub use ripples::{LEAST as LEAST_TURN, Ripple, Ripples, ripples};
+pub use sampled::Sampled;
+pub use turns::{NoTable, Turn, turns};
+pub use watch::Watch;
 
-use super::evaluate::{Evaluator, Exact, rules};
+use super::evaluate::{meets, rules};
 use super::lower::Lowered;
 use super::model::{Antecedent, System};
-use rayon::prelude::*;
 use std::collections::BTreeSet;
+use sweep::Sweep;
+
+/// Values of outputs without a table that are kept, 8 bytes each, to look for turns in them.
+const MOST_VALUES: usize = 32_000_000;
 
 /// All findings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Gaps and dead rules; `None` if the system has too many pieces to look through.
-    pub coverage: Option<Coverage>,
+    /// Gaps and dead rules; as the grid shows them if the exact search takes too long.
+    pub coverage: Result<Coverage, Sampled>,
     /// Rules that fire and never count, each with the one that outdoes it most often.
     pub dominated: Vec<(usize, usize)>,
+    /// Where an input has no term at all: index of the input, and where.
+    pub bare: Vec<(usize, Stretch)>,
+    /// Input terms that reach no value of their input's range: indices of input and term.
+    pub outside: Vec<(usize, usize)>,
     /// Input terms that no rule asks about: indices of input and term.
     pub unasked: Vec<(usize, usize)>,
     /// Output terms that no rule concludes, none that ever fires at least: indices of output and term.
     pub unconcluded: Vec<(usize, usize)>,
-    /// Where tables turn, an entry an output; `None` for one that has no table.
-    pub turns: Vec<Option<Vec<Turn>>>,
+    /// Output terms whose set is nothing at any sample: indices of output and term.
+    pub unmet: Vec<(usize, usize)>,
+    /// Conclusions beyond their output's range.
+    pub beyond: Vec<Beyond>,
+    /// Where tables turn, an entry an output.
+    pub turns: Vec<Turns>,
     /// Points of the grid.
     pub points: usize,
     /// The error of fixed point, an entry an output; `None` without fixed point.
     pub errors: Option<Vec<Errors>>,
+}
+
+/// Where an output turns.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turns {
+    /// In its rule table.
+    Table(Vec<Turn>),
+    /// It has no table; so it was looked along every input on the grid.
+    Sampled(NoTable, Vec<Ripples>),
+    /// It has no table, and the grid has too many points.
+    Unknown(NoTable),
 }
 
 /// The error of an output.
@@ -55,67 +86,70 @@ pub struct Errors {
 }
 
 /// Checks a system, and its fixed point against `f64`, on a grid of about so many points.
-pub fn check(system: &System, lowered: Option<&Lowered>, points: usize) -> Report {
+pub fn check(
+    system: &System,
+    lowered: Option<&Lowered>,
+    points: usize,
+    watch: &dyn Watch,
+) -> Report {
+    watch.begin("looking for gaps", None);
+    let coverage = coverage(system, MOST_WORK);
     let grid = Grid::new(system, points);
-    let (dominance, errors) = match lowered {
-        None => (sweep(system, None, &grid).0, None),
+    let tables = turns(system);
+    let untabled: Vec<usize> = (0..tables.len()).filter(|&o| tables[o].is_err()).collect();
+    let sweep = Sweep {
+        system,
+        grid: &grid,
+        kept: match untabled.len().saturating_mul(grid.len()) <= MOST_VALUES {
+            true => &untabled,
+            false => &[],
+        },
+        covers: coverage.is_none(),
+        watch,
+    };
+    watch.begin("evaluating a grid", Some(grid.len()));
+    let (seen, errors) = match lowered {
+        None => (sweep.all(None), None),
         Some(lowered) => {
             let jumps = Jumps::of(system, lowered);
-            let (dominance, measured) =
-                lowered.open(|fixed| sweep(system, Some((&fixed, &jumps)), &grid));
-            let both = measured.into_iter().zip(bounds(system, lowered));
-            let errors = both.map(|(measured, bounds)| Errors { measured, bounds });
-            (dominance, Some(errors.collect()))
+            let seen = lowered.open(|fixed| sweep.all(Some((&fixed, &jumps))));
+            watch.begin("bounding the error of fixed point", None);
+            let both = seen.accuracy.iter().zip(bounds(system, lowered));
+            let errors = both.map(|(measured, bounds)| Errors {
+                measured: measured.clone(),
+                bounds,
+            });
+            let errors = errors.collect();
+            (seen, Some(errors))
         }
     };
-    let coverage = coverage(system);
+    let turns = tables.into_iter().enumerate().map(|(output, table)| {
+        let place = sweep.kept.iter().position(|&kept| kept == output);
+        match (table, place) {
+            (Ok(turns), _) => Turns::Table(turns),
+            (Err(why), None) => Turns::Unknown(why),
+            (Err(why), Some(place)) => {
+                let values = seen.values.iter().skip(place).step_by(sweep.kept.len());
+                let values: Vec<f64> = values.copied().collect();
+                Turns::Sampled(why, ripples(system, &grid, output, &values))
+            }
+        }
+    });
     Report {
-        dominated: dominance.dominated(),
+        bare: bare(system),
+        outside: outside(system),
         unasked: unasked(system),
         unconcluded: unconcluded(system, coverage.as_ref()),
-        turns: turns(system),
+        unmet: (output_terms(system))
+            .filter(|&(output, term)| !meets(&system.outputs[output], term))
+            .collect(),
+        beyond: beyond(system),
+        turns: turns.collect(),
         points: grid.len(),
-        coverage,
         errors,
+        dominated: seen.dominance.dominated(),
+        coverage: coverage.ok_or(seen.sampled),
     }
-}
-
-/// Fixed point, and where not to compare it.
-type Compared<'a> = (&'a dyn Evaluator, &'a Jumps);
-
-/// Looks at every point once.
-fn sweep(system: &System, fixed: Option<Compared<'_>>, grid: &Grid) -> (Dominance, Vec<Accuracy>) {
-    let exact = Exact::new(system);
-    let none = || {
-        (
-            Dominance::new(system),
-            vec![Accuracy::default(); system.outputs.len()],
-        )
-    };
-    // Chunks of a fixed size, put together in order: sums do not depend on the number of cores.
-    let starts: Vec<usize> = (0..grid.len()).step_by(1024).collect();
-    let parts: Vec<_> = starts
-        .into_par_iter()
-        .map(|start| {
-            let (mut dominance, mut accuracy) = none();
-            for index in start..(start + 1024).min(grid.len()) {
-                let point = grid.point(index);
-                let evaluation = exact.evaluate(&point);
-                dominance.see(&evaluation);
-                if let Some((fixed, _)) = fixed.filter(|(_, jumps)| !jumps.near(&point)) {
-                    let found = fixed.evaluate(&point);
-                    Accuracy::see(&mut accuracy, system, &point, &evaluation, &found);
-                }
-            }
-            (dominance, accuracy)
-        })
-        .collect();
-    parts
-        .into_iter()
-        .fold(none(), |(dominance, accuracy), part| {
-            let both = accuracy.into_iter().zip(part.1);
-            (dominance.and(part.0), both.map(|(a, b)| a.and(b)).collect())
-        })
 }
 
 fn unasked(system: &System) -> Vec<(usize, usize)> {
@@ -150,54 +184,26 @@ fn unconcluded(system: &System, coverage: Option<&Coverage>) -> Vec<(usize, usiz
         .filter(|(index, _)| fires(*index))
         .flat_map(|(_, (_, rule))| rule.conclusions.iter().copied())
         .collect();
-    let terms = system.outputs.iter().enumerate();
-    terms
-        .flat_map(|(output, of)| (0..of.terms.len()).map(move |term| (output, term)))
+    output_terms(system)
         .filter(|term| !concluded.contains(term))
         .collect()
+}
+
+fn output_terms(system: &System) -> impl Iterator<Item = (usize, usize)> {
+    let outputs = system.outputs.iter().enumerate();
+    outputs.flat_map(|(output, of)| (0..of.terms.len()).map(move |term| (output, term)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzzy::evaluate::Evaluation;
     use crate::fuzzy::lower::lower;
     use crate::fuzzy::sample::{fan, rule};
-
-    /// The exact values, off by `error` at 40 °C and 100 %.
-    struct Off<'a>(Exact<'a>, f64);
-
-    impl Evaluator for Off<'_> {
-        fn evaluate(&self, inputs: &[f64]) -> Evaluation {
-            let mut evaluation = self.0.evaluate(inputs);
-            if inputs == [40.0, 100.0] {
-                evaluation.outputs = vec![evaluation.outputs[0].map(|x| x - self.1)];
-            }
-            evaluation
-        }
-    }
-
-    #[test]
-    fn the_error_is_found_where_it_is() {
-        let fan = fan();
-        let (grid, jumps) = (
-            Grid::new(&fan, 10_000),
-            Jumps::of(&fan, &lower(&fan).unwrap()),
-        );
-        let off = Off(Exact::new(&fan), 0.25);
-        let found = &sweep(&fan, Some((&off, &jumps)), &grid).1[0].classes[0];
-        assert_eq!(
-            (found.worst, found.at.as_slice()),
-            (0.25, &[40.0, 100.0][..])
-        );
-        assert!((found.rms() - 0.25 / (found.points as f64).sqrt()).abs() < 1e-12);
-        assert_eq!(found.points, grid.len());
-    }
 
     #[test]
     fn what_is_measured_is_within_the_bounds() {
         let fan = fan();
-        let errors = check(&fan, lower(&fan).ok().as_ref(), 10_000)
+        let errors = check(&fan, lower(&fan).ok().as_ref(), 10_000, &())
             .errors
             .unwrap();
         for (class, bound) in errors[0].measured.classes.iter().zip(errors[0].bounds) {
@@ -213,19 +219,19 @@ mod tests {
         fan.blocks[0]
             .rules
             .retain(|rule| rule.conclusions != [(0, 2)]);
-        let report = check(&fan, None, 100);
+        let report = check(&fan, None, 100, &());
         assert_eq!(report.unasked, [(1, 2)]);
         assert_eq!(report.unconcluded, [(0, 2)]);
         // A rule that never fires concludes nothing.
         let mut never = rule(&[(0, 0, false)], &[(0, 2)]);
         never.weight = 0.0;
         fan.blocks[0].rules.push(never);
-        assert_eq!(check(&fan, None, 100).unconcluded, [(0, 2)]);
+        assert_eq!(check(&fan, None, 100, &()).unconcluded, [(0, 2)]);
     }
 
     #[test]
     fn a_clean_system_has_no_finding() {
-        let report = check(&fan(), None, 1000);
+        let report = check(&fan(), None, 1000, &());
         assert_eq!(
             (
                 report.dominated,
@@ -234,7 +240,7 @@ mod tests {
                 report.turns,
                 report.errors
             ),
-            (vec![], vec![], vec![], vec![Some(vec![])], None)
+            (vec![], vec![], vec![], vec![Turns::Table(vec![])], None)
         );
     }
 }

@@ -8,6 +8,7 @@
 //!
 //! The text is the whole result: nothing is written anywhere here.
 
+mod beyond;
 pub mod c;
 mod literal;
 mod names;

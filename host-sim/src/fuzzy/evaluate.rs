@@ -7,11 +7,13 @@ use super::model::{
     Antecedent, Conclusion, Conjunction, Defuzzifier, Merge, Output, Rule, RuleBlock, Sampling,
     System,
 };
+use fuzzypilot::fuzzy::Grade;
 
 /// What came of one evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluation {
-    /// Each output's value; `None` where no rule fires and the output has no default.
+    /// Each output's value; `None` where no rule fires, or only such as conclude sets that meet no sample, and the output
+    /// has no default.
     pub outputs: Vec<Option<f64>>,
     /// Each rule's degree times its weight, 0 to 1, block after block in the file's order.
     pub rules: Vec<f64>,
@@ -69,6 +71,24 @@ pub fn samples(output: &Output) -> Vec<f64> {
         Sampling::Ends => start + i as f64 * ((end - start) / (points.max(2) - 1) as f64),
     };
     (0..points).map(at).collect()
+}
+
+/// Whether what a term of an output concludes has a value: a number always, a set if it is anything at one of the samples.
+/// Less than half a step of 2⁻¹⁵, as sets have it in fixed point, is nothing.
+pub fn meets(output: &Output, term: usize) -> bool {
+    const LEAST: f64 = 0.5 / Grade::ONE.bits() as f64;
+    match &output.terms[term].conclusion {
+        Conclusion::Set(shape) => samples(output).iter().any(|&x| shape.degree(x) >= LEAST),
+        Conclusion::Constant(_) | Conclusion::Linear { .. } => true,
+    }
+}
+
+/// Whether a rule with a weight concludes something about an output: one term of it, or any.
+pub fn concluded(system: &System, output: usize, term: Option<usize>) -> bool {
+    rules(system)
+        .filter(|(_, rule)| rule.weight > 0.0)
+        .flat_map(|(_, rule)| &rule.conclusions)
+        .any(|&(of, what)| of == output && term.is_none_or(|term| term == what))
 }
 
 /// The evaluation in `f64`, with the outputs' sets sampled once.

@@ -42,6 +42,22 @@ pub enum LowerError {
         /// What is possible.
         limit: String,
     },
+    /// Rules conclude a set that is nothing at any sample: they would say nothing.
+    #[error(
+        "{}the set of the term `{term}` is zero at every one of the {samples} samples of the output `{output}`, and rules \
+         conclude it",
+        at(*place)
+    )]
+    EmptySet {
+        /// Where.
+        place: Place,
+        /// The output.
+        output: String,
+        /// Its term.
+        term: String,
+        /// How many samples there are.
+        samples: usize,
+    },
     /// The tables are refused by the library's own checks.
     #[error("{0}")]
     Flawed(Flaw),

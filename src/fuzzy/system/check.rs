@@ -430,10 +430,12 @@ const fn sets(
         while s < set.len() && set[s].bits() == 0 {
             s += 1;
         }
-        if output.complete && s == set.len() {
+        let weight = weight(blocks, o, t, merge);
+        // Where only rules fire that conclude it, nothing would be left to divide by.
+        if weight > 0 && s == set.len() {
             return Err(Flaw::EmptySet { output: o, term: t });
         }
-        sum = sum.saturating_add(weight(blocks, o, t, merge));
+        sum = sum.saturating_add(weight);
         t += 1;
     }
     // What is added at one place has 32 bits. The largest of several never has more than a degree.

@@ -135,7 +135,7 @@ pub enum Flaw {
         /// Its term.
         term: usize,
     },
-    /// A set that is zero at every sample, in an output that claims to be complete: rules that conclude it say nothing.
+    /// A set that rules conclude and that is zero at every sample: they would say nothing.
     EmptySet {
         /// The output.
         output: usize,
@@ -246,7 +246,7 @@ impl Flaw {
             Self::EmptySet { output, term } => text
                 .named("output", output)
                 .named(", term", term)
-                .and(": this set is zero at every sample"),
+                .and(": rules conclude this set, and it is zero at every sample"),
             Self::SampleRange { output } => text
                 .named("output", output)
                 .and(": its samples go beyond its range, and it is not limited"),

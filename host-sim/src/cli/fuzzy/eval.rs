@@ -6,7 +6,7 @@ use super::table::{right, table};
 use crate::cli::{BadInput, print, put, whole};
 use clap::Args;
 use comfy_table::{Cell, Table};
-use host_sim::fuzzy::check::Grid;
+use host_sim::fuzzy::check::{Grid, strength};
 use host_sim::fuzzy::describe;
 use host_sim::fuzzy::evaluate::{Evaluation, Evaluator, Exact, memberships, rules, taken};
 use host_sim::fuzzy::lower::Fixed;
@@ -125,13 +125,15 @@ fn outside(system: &System, values: &[Option<f64>]) -> String {
 
 fn outputs(design: &Design, exact: &Evaluation, fixed: Option<&Evaluation>) -> Table {
     let mut table = table(["output", "f64", "fixed point", "difference"]);
+    let evaluation = exact;
     for (index, output) in design.system.outputs.iter().enumerate() {
         let resolution = design.resolution(index);
-        let value = |x: Option<f64>| {
-            x.map_or("no rule fires".to_owned(), |x| {
-                describe::number_to(x, resolution)
-            })
+        let none = match strength(&design.system, index, evaluation) > 0.0 {
+            true => "no value: the concluded sets meet no sample",
+            false => "no rule fires",
         };
+        let value =
+            |x: Option<f64>| x.map_or(none.to_owned(), |x| describe::number_to(x, resolution));
         let exact = exact.outputs.get(index).copied().flatten();
         let fixed = fixed.map(|fixed| fixed.outputs.get(index).copied().flatten());
         let difference = match (exact, fixed.flatten()) {

@@ -20,7 +20,7 @@ use super::jumps::Jumps;
 use crate::fuzzy::evaluate::{conjoined, merged, rules, samples};
 use crate::fuzzy::lower::{Fixed, Lowered};
 use crate::fuzzy::model::{
-    Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Output, Rule, RuleBlock, System,
+    Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Merge, Output, Rule, RuleBlock, System,
 };
 use fuzzypilot::fuzzy::Grade;
 use fuzzypilot::fuzzy::system::{self as fixed, Degree};
@@ -553,11 +553,39 @@ impl<'a> Target<'a> {
         }
     }
 
+    /// Where the largest counts, rules that do the same to the same set as one: thousands of rules have few sets.
+    fn together(
+        &self,
+        about: &[(Conjunction, Spread, usize)],
+    ) -> Vec<(Conjunction, Spread, usize)> {
+        if self.output.merge == Merge::Sum {
+            return about.to_vec();
+        }
+        let mut groups: Vec<(Conjunction, Spread, usize)> = Vec::new();
+        for &(implication, spread, term) in about {
+            let same = groups
+                .iter_mut()
+                .find(|group| (group.0, group.2) == (implication, term));
+            match same {
+                Some((_, group, _)) => {
+                    *group = Spread {
+                        low: group.low.max(spread.low),
+                        high: group.high.max(spread.high),
+                        error: group.error.max(spread.error),
+                    };
+                }
+                None => groups.push((implication, spread, term)),
+            }
+        }
+        groups
+    }
+
     /// Σ μ·x / Σ μ over the samples.
     fn of_sets(&self, about: &[(Conjunction, Spread, usize)]) -> Weights<'_> {
-        let rules: Vec<_> = about
-            .iter()
-            .map(|&(implication, spread, term)| (implication, spread, &self.sets[term]))
+        let rules: Vec<_> = self
+            .together(about)
+            .into_iter()
+            .map(|(implication, spread, term)| (implication, spread, &self.sets[term]))
             .collect();
         // The least area that a rule of this degree has.
         let areas = rules.clone();

@@ -19,9 +19,28 @@ pub struct Turn {
     pub cells: [(usize, f64); 3],
 }
 
+/// Why an output has no table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoTable {
+    /// No rule concludes anything about it.
+    NoRule,
+    /// More inputs than rows and columns.
+    Inputs,
+    /// A rule with an OR, by its index.
+    Or(usize),
+    /// A rule with a NOT.
+    Not(usize),
+    /// A rule that does not ask about each input once.
+    Asks(usize),
+    /// A term that is no number for all inputs, by its index.
+    Linear(usize),
+    /// A term whose set is zero at every sample.
+    Unmet(usize),
+}
+
 /// The turns of every output that has a table: one or two inputs, each rule about it "a is x" or "a is x and b is y", its
-/// conclusions numbers or sets (a set counts as its centroid). `None` in place of an output without one.
-pub fn turns(system: &System) -> Vec<Option<Vec<Turn>>> {
+/// conclusions numbers or sets (a set counts as its centroid). In place of an output without one: why.
+pub fn turns(system: &System) -> Vec<Result<Vec<Turn>, NoTable>> {
     let orders: Vec<Vec<usize>> = system.inputs.iter().map(order).collect();
     (0..system.outputs.len())
         .map(|output| table(system, output).map(|table| of_table(&orders, output, &table)))
@@ -31,35 +50,49 @@ pub fn turns(system: &System) -> Vec<Option<Vec<Turn>>> {
 /// Conclusions by the terms of the first and the second input; with one input the second is 0.
 type Table = BTreeMap<(usize, usize), f64>;
 
-fn table(system: &System, index: usize) -> Option<Table> {
-    let output = system.outputs.get(index)?;
+fn table(system: &System, index: usize) -> Result<Table, NoTable> {
+    let output = &system.outputs[index];
     let mut table = Table::new();
-    for (_, rule) in rules(system) {
+    for (number, (_, rule)) in rules(system).enumerate() {
         for &(_, term) in rule.conclusions.iter().filter(|c| c.0 == index) {
-            let cell = cell(&rule.antecedent, system.inputs.len())?;
-            let conclusion = &output.terms.get(term)?.conclusion;
-            table.insert(cell, height(output, conclusion)?);
+            let cell = cell(&rule.antecedent, system.inputs.len(), number)?;
+            let conclusion = &output.terms[term].conclusion;
+            let height = height(output, conclusion).ok_or(match conclusion {
+                Conclusion::Set(_) => NoTable::Unmet(term),
+                Conclusion::Constant(_) | Conclusion::Linear { .. } => NoTable::Linear(term),
+            })?;
+            table.insert(cell, height);
         }
     }
-    Some(table).filter(|table| !table.is_empty())
+    match table.is_empty() {
+        true => Err(NoTable::NoRule),
+        false => Ok(table),
+    }
 }
 
-fn cell(antecedent: &Antecedent, inputs: usize) -> Option<(usize, usize)> {
-    let term = |part: &Antecedent, of: usize| match *part {
-        Antecedent::Is {
-            input,
-            term,
-            negated: false,
-        } if input == of => Some(term),
-        _ => None,
+fn cell(antecedent: &Antecedent, inputs: usize, rule: usize) -> Result<(usize, usize), NoTable> {
+    if inputs > 2 {
+        return Err(NoTable::Inputs);
+    }
+    let parts = match antecedent {
+        Antecedent::And(parts) => parts.as_slice(),
+        part => std::slice::from_ref(part),
     };
-    match (antecedent, inputs) {
-        (part, 1) => Some((term(part, 0)?, 0)),
-        (Antecedent::And(parts), 2) => match parts.as_slice() {
-            [a, b] => (term(a, 0).zip(term(b, 1))).or(term(b, 0).zip(term(a, 1))),
-            _ => None,
-        },
-        _ => None,
+    let mut terms = [None; 2];
+    for part in parts {
+        match *part {
+            Antecedent::Is { negated: true, .. } => return Err(NoTable::Not(rule)),
+            Antecedent::Is { input, term, .. } if terms[input].is_none() => {
+                terms[input] = Some(term);
+            }
+            Antecedent::Or(_) => return Err(NoTable::Or(rule)),
+            Antecedent::Is { .. } | Antecedent::And(_) => return Err(NoTable::Asks(rule)),
+        }
+    }
+    match (inputs, terms) {
+        (1, [Some(term), None]) => Ok((term, 0)),
+        (2, [Some(row), Some(col)]) => Ok((row, col)),
+        _ => Err(NoTable::Asks(rule)),
     }
 }
 
@@ -141,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_table_that_only_rises_has_none() {
-        assert_eq!(turns(&fan()), [Some(vec![])]);
+        assert_eq!(turns(&fan()), [Ok(vec![])]);
     }
 
     #[test]
@@ -178,6 +211,19 @@ mod tests {
             term: 0,
             negated: true,
         };
-        assert_eq!(turns(&fan), [None]);
+        assert_eq!(turns(&fan), [Err(NoTable::Not(0))]);
+        let of = |term| Antecedent::Is {
+            input: 0,
+            term,
+            negated: false,
+        };
+        fan.blocks[0].rules[0].antecedent = of(0);
+        assert_eq!(turns(&fan), [Err(NoTable::Asks(0))]);
+        fan.blocks[0].rules[0].antecedent = Antecedent::Or(vec![of(0), of(1)]);
+        assert_eq!(turns(&fan), [Err(NoTable::Or(0))]);
+        fan.inputs.push(fan.inputs[0].clone());
+        assert_eq!(turns(&fan), [Err(NoTable::Inputs)]);
+        fan.blocks[0].rules.clear();
+        assert_eq!(turns(&fan), [Err(NoTable::NoRule)]);
     }
 }

@@ -4,7 +4,7 @@ use super::antecedent::conjunctions;
 use super::pieces::{anchors, degree, pieces};
 use super::set::set;
 use super::{Format, LowerError};
-use crate::fuzzy::evaluate::samples;
+use crate::fuzzy::evaluate::{concluded, samples};
 use crate::fuzzy::model::{self, Conclusion, Conjunction, Place, Sampling};
 use fuzzypilot::fuzzy::Grade;
 use fuzzypilot::fuzzy::system::{
@@ -83,8 +83,10 @@ pub struct Output {
     pub name: String,
     /// Its numbers' format.
     pub format: Format,
-    /// What its values are limited to, in steps: its range, or all that it can conclude.
+    /// What its values are limited to, in steps: its range, or all numbers.
     pub range: [i32; 2],
+    /// Whether they have to be. Where not, the library has proven that no conclusion lies beyond.
+    pub clamp: bool,
     /// Its value where no rule fires.
     pub default: i32,
     /// How conclusions become a number, and its terms.
@@ -153,15 +155,33 @@ impl Tables {
         let outputs = model
             .outputs
             .iter()
-            .map(|this| output(this, model, &inputs))
-            .collect::<Result<_, _>>()?;
+            .enumerate()
+            .map(|(index, this)| output(this, index, model, &inputs))
+            .collect::<Result<Vec<_>, _>>()?;
         let blocks = model.blocks.iter().map(block).collect::<Result<_, _>>()?;
-        Ok(Self {
+        let mut tables = Self {
             name: model.name.clone(),
             inputs,
             blocks,
             outputs,
-        })
+        };
+        for (o, output) in model.outputs.iter().enumerate() {
+            if !output.clamp {
+                tables.keep_in_range(o, &output.range);
+            }
+        }
+        Ok(tables)
+    }
+
+    /// Gives an output that is not limited its own range again, if the library proves that nothing leaves it.
+    fn keep_in_range(&mut self, o: usize, range: &RangeInclusive<f64>) {
+        let mut kept = self.outputs[o].clone();
+        kept.range = in_steps(range, kept.format);
+        kept.clamp = false;
+        let free = std::mem::replace(&mut self.outputs[o], kept);
+        if self.borrowed(|system| system.is_err()) {
+            self.outputs[o] = free;
+        }
     }
 
     /// What the library can prove of them: inputs without a gap, outputs with a rule for every combination of terms.
@@ -259,7 +279,7 @@ impl Tables {
             .enumerate()
             .map(|(o, (output, terms))| system::Output {
                 range: output.range,
-                clamp: true,
+                clamp: output.clamp,
                 default: output.default,
                 complete: claimed(&claims.outputs, o),
                 defuzzifier: terms.defuzzifier(&output.defuzzifier),
@@ -405,6 +425,7 @@ fn rule(rule: &model::Rule) -> Result<Rule, LowerError> {
 
 fn output(
     output: &model::Output,
+    index: usize,
     model: &model::System,
     inputs: &[Input],
 ) -> Result<Output, LowerError> {
@@ -418,12 +439,27 @@ fn output(
     } else {
         [-LIMIT, LIMIT]
     };
+    let defuzzifier = defuzzifier(output, format, inputs)?;
+    if let Defuzzifier::Centroid { samples, terms, .. } = &defuzzifier {
+        let is_empty = |set: &[Grade]| set.iter().all(|grade| grade.bits() == 0);
+        let empty = (0..terms.len())
+            .find(|&term| is_empty(&terms[term].1) && concluded(model, index, Some(term)));
+        if let Some(term) = empty {
+            return Err(LowerError::EmptySet {
+                place: output.terms[term].place,
+                output: output.name.clone(),
+                term: output.terms[term].name.clone(),
+                samples: samples.count(),
+            });
+        }
+    }
     Ok(Output {
         name: output.name.clone(),
         format,
         range,
+        clamp: true,
         default: format.nearest(default).clamp(range[0], range[1]),
-        defuzzifier: defuzzifier(output, format, inputs)?,
+        defuzzifier,
     })
 }
 

@@ -335,8 +335,8 @@ fn alone(system: &System, slots: &[(usize, Slot, f64)], selection: &Selection) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzzy::check::coverage;
-    use crate::fuzzy::lower::lower;
+    use crate::fuzzy::check::{MOST_WORK, coverage};
+    use crate::fuzzy::lower::{LowerError, lower};
     use crate::fuzzy::model::{Conclusion, Shape};
     use crate::fuzzy::random;
     use crate::fuzzy::sample::fan;
@@ -453,8 +453,11 @@ mod tests {
             let vector: Vec<f64> = moves.iter().map(|x| x * far).take(movable.len()).collect();
             prop_assume!(vector.len() == movable.len());
             let (candidate, _) = movable.decode(&vector);
-            if let Err(error) = lower(&candidate) {
-                prop_assert!(false, "{}", error);
+            match lower(&candidate) {
+                Ok(_) => {}
+                // A set that has moved between the samples: the search refuses the candidate.
+                Err(LowerError::EmptySet { .. }) => return Ok(()),
+                Err(error) => prop_assert!(false, "{}", error),
             }
             prop_assert_eq!(ranks(&start), ranks(&candidate));
             let straight = |s: &System| s.inputs.iter().flat_map(|i| &i.terms).all(|term| {
@@ -464,7 +467,10 @@ mod tests {
                 )
             });
             if straight(&start)
-                && let (Some(before), Some(after)) = (coverage(&start), coverage(&candidate))
+                && let (Some(before), Some(after)) = (
+                        coverage(&start, MOST_WORK),
+                        coverage(&candidate, MOST_WORK),
+                    )
             {
                 prop_assert_eq!(before.fires, after.fires);
                 prop_assert_eq!(before.gaps.is_empty(), after.gaps.is_empty());

@@ -9,9 +9,6 @@
 
 #include "fan.h"
 
-/* The largest magnitude of a number, in steps. */
-#define LIMIT INT32_C(1073741822)
-
 /* The smaller of two degrees. */
 static uint32_t least(uint32_t a, uint32_t b)
 {
@@ -192,6 +189,6 @@ void fan_evaluate(const int32_t in[FAN_INPUTS], int32_t out[FAN_OUTPUTS], uint32
         value = INT32_C(6553600); /* high */
         add(&sum, &weight, rules[5], value);
         value = rounded(sum, weight);
-        out[FAN_FAN] = (weight == 0U) ? FAN_FAN_DEFAULT : limited(value, -LIMIT, LIMIT);
+        out[FAN_FAN] = (weight == 0U) ? FAN_FAN_DEFAULT : limited(value, FAN_FAN_LEAST, FAN_FAN_MOST);
     }
 }

@@ -68,7 +68,7 @@ enum
 #define FAN_HUMIDITY_LEAST INT32_C(1966080)
 #define FAN_HUMIDITY_MOST INT32_C(5242880)
 
-/* The output "fan": 0 to 100; values are beyond where a rule concludes it.
+/* The output "fan": 0 to 100; no value is beyond.
    A step is 2^-FAN_FAN_FRACTION. */
 #define FAN_FAN_FRACTION (16)
 #define FAN_FAN_LEAST INT32_C(0)

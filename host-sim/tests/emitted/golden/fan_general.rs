@@ -11,7 +11,7 @@
 //! |---|---|---|---|---|
 //! | input `temperature` | 2^-16 | 1179648 = 18 | 2097152 = 32 | counts as the end |
 //! | input `humidity` | 2^-16 | 1966080 = 30 | 5242880 = 80 | counts as the end |
-//! | output `fan` | 2^-16 | 0 = 0 | 6553600 = 100 | where a rule concludes it |
+//! | output `fan` | 2^-16 | 0 = 0 | 6553600 = 100 | never |
 //!
 //! It is off the same design in exact arithmetic by at most, where some rule has a degree of
 //!
@@ -103,8 +103,8 @@ pub static CONTROLLER: Controller<2, 5, 6, 1> = Controller::new(System::new(
     &[
         // fan
         Output {
-            range: [-LIMIT, LIMIT],
-            clamp: true,
+            range: [q16("0"), q16("100")],
+            clamp: false,
             default: q16("0"),
             complete: true,
             defuzzifier: Defuzzifier::WeightedAverage {
@@ -124,9 +124,6 @@ pub static CONTROLLER: Controller<2, 5, 6, 1> = Controller::new(System::new(
 pub fn evaluate(inputs: [i32; 2]) -> [i32; 1] {
     CONTROLLER.evaluate(inputs).outputs
 }
-
-/// The largest magnitude of a number, in steps.
-const LIMIT: i32 = fuzzypilot::fuzzy::system::LIMIT;
 
 /// A number in steps of 2^−16.
 const fn q16(text: &str) -> i32 {

@@ -1,10 +1,12 @@
 //! The header: what a program may name.
 
 use super::super::Design;
+use super::super::beyond::beyond;
 use super::super::words::{count, plain};
 use super::{Names, source};
 use crate::fuzzy::check::STRENGTHS;
 use crate::fuzzy::describe::{exact, number};
+use crate::fuzzy::evaluate::concluded;
 use crate::fuzzy::lower::Format;
 use fuzzypilot::fuzzy::system::LIMIT;
 use std::fmt::Write;
@@ -84,11 +86,13 @@ pub fn text(design: &Design<'_>, names: &Names) -> String {
             input.range,
         );
     }
-    let models = &design.system.outputs;
-    for ((output, variable), model) in tables.outputs.iter().zip(&names.all.outputs).zip(models) {
-        let beyond = match model.clamp {
-            true => "no value is beyond",
-            false => "values are beyond where a rule concludes it",
+    let models = design.system.outputs.iter().enumerate();
+    for ((output, variable), (o, model)) in
+        tables.outputs.iter().zip(&names.all.outputs).zip(models)
+    {
+        let beyond = match beyond(design, o) {
+            None => "no value is beyond".to_owned(),
+            Some(terms) => format!("values may be beyond by {terms}"),
         };
         let ends = [model.range.start(), model.range.end()];
         let ends = ends.map(|&end| output.format.nearest(end));
@@ -134,7 +138,12 @@ pub fn error(design: &Design<'_>) -> String {
         0.0 => "any".to_owned(),
         least => format!("1/{}", 1.0 / least),
     });
-    for (output, bounds) in design.lowered.tables().outputs.iter().zip(bounds) {
+    let outputs = design.lowered.tables().outputs.iter().enumerate();
+    for ((o, output), bounds) in outputs.zip(bounds) {
+        if !concluded(design.system, o, None) {
+            let _ = writeln!(text, "   - {}: no rule concludes it", plain(&output.name));
+            continue;
+        }
         let each: Vec<String> = degrees
             .iter()
             .zip(bounds)

@@ -98,7 +98,7 @@ impl<'a> Writer<'a> {
                 identifier: &names.name,
                 fraction: FRACTION,
                 range: input.range,
-                beyond: "counts as the outermost term",
+                beyond: "counts as the outermost term".to_owned(),
             });
         let outputs = tables
             .outputs
@@ -114,7 +114,7 @@ impl<'a> Writer<'a> {
                 identifier: &names.name,
                 fraction: self.fraction(table),
                 range: ends.map(|end| end.copied().unwrap_or(0) << shift),
-                beyond: "never",
+                beyond: "never".to_owned(),
             }
         });
         inputs.chain(outputs).collect()

@@ -1,6 +1,7 @@
 //! A module for `fuzzypilot::fuzzy::system`: any design, the same integers as [`Lowered`](crate::fuzzy::lower::Lowered).
 
 use super::super::Design;
+use super::super::beyond::beyond;
 use super::super::literal::literal;
 use super::super::names::{Identifiers, Taken, Variable};
 use super::super::pieces::thinned;
@@ -10,6 +11,7 @@ use super::shapes::{Argument, Call};
 use super::{identifiers, shout};
 use crate::fuzzy::check::STRENGTHS;
 use crate::fuzzy::describe::{self, number};
+use crate::fuzzy::evaluate::concluded;
 use crate::fuzzy::lower::{self, Claims, Defuzzifier, Format, Number, Tables};
 use crate::fuzzy::model::{Sampling, Shape};
 use fuzzypilot::fuzzy::Grade;
@@ -126,8 +128,11 @@ fn error(design: &Design<'_>) -> Vec<String> {
         "| output | ≥ 1/2 | ≥ 1/8 | ≥ 1/64 | > 0 |".to_owned(),
         "|---|---|---|---|---|".to_owned(),
     ];
-    for (output, bounds) in design.lowered.tables().outputs.iter().zip(bounds) {
+    let outputs = design.lowered.tables().outputs.iter().enumerate();
+    for ((o, output), bounds) in outputs.zip(bounds) {
+        let concluded = concluded(design.system, o, None);
         let each: [String; STRENGTHS.len()] = bounds.map(|bound| match bound.is_finite() {
+            _ if !concluded => "no rule concludes it".to_owned(),
             true => number(bound),
             false => "not bounded".to_owned(),
         });
@@ -196,26 +201,25 @@ impl<'a> Writer<'a> {
             identifier: &names.name,
             fraction: input.format.fraction,
             range: input.range,
-            beyond: if input.clamp {
-                "counts as the end"
-            } else {
-                "counts as it is"
+            beyond: match input.clamp {
+                true => "counts as the end".to_owned(),
+                false => "counts as it is".to_owned(),
             },
         });
         let outputs = tables.outputs.iter().zip(&self.names.outputs);
-        let models = &self.design.system.outputs;
-        let outputs = outputs.zip(models).map(|((output, names), model)| Signal {
-            kind: "output",
-            name: &output.name,
-            identifier: &names.name,
-            fraction: output.format.fraction,
-            range: [model.range.start(), model.range.end()].map(|&end| output.format.nearest(end)),
-            beyond: if model.clamp {
-                "never"
-            } else {
-                "where a rule concludes it"
-            },
-        });
+        let models = self.design.system.outputs.iter().enumerate();
+        let outputs = outputs
+            .zip(models)
+            .map(|((output, names), (o, model))| Signal {
+                kind: "output",
+                name: &output.name,
+                identifier: &names.name,
+                fraction: output.format.fraction,
+                range: [model.range.start(), model.range.end()]
+                    .map(|&end| output.format.nearest(end)),
+                beyond: beyond(self.design, o)
+                    .map_or_else(|| "never".to_owned(), |terms| format!("by {terms}")),
+            });
         inputs.chain(outputs).collect()
     }
 
@@ -490,9 +494,10 @@ impl<'a> Writer<'a> {
         };
         let default = self.steps(output.default, format);
         let complete = self.claims.outputs.get(o).copied().unwrap_or(false);
+        let clamp = output.clamp;
         let _ = write!(
             text,
-            "        // {}\n        Output {{\n            range: [{low}, {high}],\n            clamp: true,\n            \
+            "        // {}\n        Output {{\n            range: [{low}, {high}],\n            clamp: {clamp},\n            \
              default: {default},\n            complete: {complete},\n            defuzzifier: Defuzzifier::",
             plain(&output.name)
         );

@@ -20,7 +20,7 @@ pub struct Signal<'a> {
     /// Its range, in steps.
     pub range: [i32; 2],
     /// What becomes of values beyond the range.
-    pub beyond: &'a str,
+    pub beyond: String,
 }
 
 /// The module's own documentation. `route` and `error` are whole lines.

@@ -1,0 +1,331 @@
+//! `host-sim fuzzy check` can be trusted: what it does not see it does not call good, and what it cuts it writes elsewhere.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use tempfile::{TempDir, tempdir};
+
+/// Two sets between the samples at 0.05, 0.15, …, one beyond the range.
+const NARROW: &str = "\
+Engine: narrow
+InputVariable: x
+  range: 0 10
+  lock-range: true
+  term: low Ramp 10 0
+  term: high Ramp 0 10
+OutputVariable: y
+  range: 0 10
+  lock-range: true
+  aggregation: Maximum
+  defuzzifier: Centroid 100
+  default: nan
+  term: a Triangle 2.96 2.98 3.04
+  term: b Triangle 7.01 7.02 7.04
+  term: off Triangle 12 13 14
+RuleBlock: rules
+  conjunction: Minimum
+  disjunction: Maximum
+  implication: Minimum
+  activation: General
+  rule: if x is low then y is a
+  rule: if x is high then y is b
+  rule: if x is not low then y is off
+";
+
+/// Nothing keeps its output in its range.
+const LINEAR: &str = "\
+Engine: linear
+InputVariable: x
+  range: 0 10
+  lock-range: true
+  term: low Ramp 10 0
+  term: high Ramp 0 10
+OutputVariable: y
+  range: 0 1
+  aggregation: UnboundedSum
+  defuzzifier: WeightedAverage TakagiSugeno
+  default: 0
+  term: far Constant 500
+  term: line Linear 3 9
+OutputVariable: z
+  range: 0 1
+  aggregation: UnboundedSum
+  defuzzifier: WeightedAverage TakagiSugeno
+  default: 0
+  term: one Constant 1
+RuleBlock: rules
+  conjunction: Minimum
+  disjunction: Maximum
+  implication: Minimum
+  activation: General
+  rule: if x is low then y is far
+  rule: if x is high then y is line
+";
+
+fn sim(dir: &Path) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("host-sim"));
+    command
+        .current_dir(dir)
+        .arg("fuzzy")
+        .timeout(std::time::Duration::from_secs(300));
+    command
+}
+
+/// Its exit code, what it prints, and what it complains of.
+fn run(dir: &TempDir, args: &[&str]) -> (i32, String, String) {
+    let output = sim(dir.path()).args(args).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn with(text: &str) -> TempDir {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("design.fll"), text).unwrap();
+    dir
+}
+
+fn json(dir: &TempDir, file: &str) -> Value {
+    serde_json::from_slice(&fs::read(dir.path().join(file)).unwrap()).unwrap()
+}
+
+#[test]
+fn sets_that_meet_no_sample_conclude_nothing() {
+    let dir = with(NARROW);
+    let (code, printed, said) = run(
+        &dir,
+        &["check", "design.fll", "--deny", "gaps,unreachable-terms"],
+    );
+    assert_eq!(code, 1);
+    assert!(said.contains("gaps, unreachable-terms: found"), "{said}");
+    for part in [
+        "│ y      ┆ everywhere ┆ 100 % ┆ x = 5       │",
+        "line 13: y is a   ┆ no sample meets it",
+        "line 14: y is b   ┆ no sample meets it",
+        "line 15: y is off ┆ no sample meets it",
+        "no fixed point: line 13",
+    ] {
+        assert!(printed.contains(part), "`{part}` not in {printed}");
+    }
+    let (_, printed, _) = run(&dir, &["eval", "design.fll", "--input", "x=5"]);
+    assert!(printed.contains("no value: the concluded sets meet no sample"));
+    for to in ["rust", "c"] {
+        let (code, _, said) = run(
+            &dir,
+            &["convert", "design.fll", "--to", to, "--out", "made.c"],
+        );
+        assert_eq!(code, 2);
+        for part in ["line 13", "`a`", "100 samples", "`y`"] {
+            assert!(said.contains(part), "`{part}` not in {said}");
+        }
+        assert!(!dir.path().join("made.c").exists());
+    }
+}
+
+#[test]
+fn where_only_an_empty_set_is_concluded_there_is_a_gap() {
+    let wide = NARROW
+        .replace("2.96 2.98 3.04", "2 3 4")
+        .replace("if x is high then y is b", "if x is low then y is b")
+        .replace("7.01 7.02 7.04", "6 7 8");
+    let (_, printed, _) = run(&with(&wide), &["check", "design.fll", "--points", "100"]);
+    assert!(printed.contains("x: exactly 10"), "{printed}");
+    assert!(!printed.contains("everywhere"), "{printed}");
+    // As soon as it reaches a sample there is none.
+    let met = wide.replace("12 13 14", "9 13 14");
+    let (code, printed, _) = run(
+        &with(&met),
+        &["check", "design.fll", "--points", "100", "--deny", "gaps"],
+    );
+    assert_eq!(code, 0, "{printed}");
+}
+
+/// All but a sliver of `x0` has a rule, and in that so many rules cross that no search sees its end.
+fn crossing() -> String {
+    let mut text = "Engine: crossing\n".to_owned();
+    for input in 0..4 {
+        let _ = writeln!(text, "InputVariable: x{input}\n  range: 0 1");
+        for term in 0..60 {
+            let left = f64::from(term) / 60.0;
+            let (peak, right) = (left + 0.004, left + 0.008);
+            let _ = writeln!(text, "  term: t{term} Triangle {left} {peak} {right}");
+        }
+    }
+    text = text.replacen(
+        "  term: t0 ",
+        "  term: below Ramp 0.501 0.4\n  term: above Ramp 0.502 0.6\n  term: t0 ",
+        1,
+    );
+    // Too far for fixed point, which is not what this is about.
+    text += "OutputVariable: y\n  range: 1e12 1000000000001\n  aggregation: UnboundedSum\n  \
+             defuzzifier: WeightedAverage TakagiSugeno\n  default: nan\n  term: one Constant 1e12\n";
+    text += "RuleBlock: rules\n  conjunction: Minimum\n  disjunction: Maximum\n  implication: Minimum\n  \
+             activation: General\n  rule: if x0 is below then y is one\n  rule: if x0 is above then y is one\n";
+    for (a, b) in (0..3600).map(|i| (i / 60, i % 60)) {
+        if (a * 31 + b * 17 + a * b * 13) % 5 == 0 {
+            for (one, other) in [(1, 2), (2, 3), (3, 1)] {
+                let _ = writeln!(
+                    text,
+                    "  rule: if x{one} is t{a} and x{other} is t{b} then y is one"
+                );
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn a_denied_finding_that_is_not_looked_for_everywhere_fails() {
+    let dir = with(&crossing());
+    let args = [
+        "check",
+        "design.fll",
+        "--points",
+        "16",
+        "--json",
+        "all.json",
+    ];
+    let (code, printed, said) = run(&dir, &[&args[..], &["--deny", "gaps"]].concat());
+    assert!(
+        printed.contains("as 16 points show them (too many pieces for the exact search): none"),
+        "{printed}"
+    );
+    assert_eq!(json(&dir, "all.json")["search"], "sampled");
+    assert_eq!(code, 1);
+    assert!(
+        said.contains("gaps (looked for at the grid's points only): could not be checked"),
+        "{said}"
+    );
+    assert_eq!(run(&dir, &args).0, 0);
+    // What the points show is found all the same.
+    fs::write(
+        dir.path().join("design.fll"),
+        crossing().replace("  rule: if x0 is above then y is one\n", ""),
+    )
+    .unwrap();
+    let (code, _, said) = run(&dir, &[&args[..], &["--deny", "gaps"]].concat());
+    assert_eq!(code, 1);
+    assert!(said.contains("gaps: found"), "{said}");
+    assert_eq!(json(&dir, "all.json")["gaps"][0]["share"], 0.5);
+}
+
+#[test]
+fn conclusions_beyond_the_range_are_found_and_named_in_what_is_made() {
+    let dir = with(LINEAR);
+    let args = [
+        "check",
+        "design.fll",
+        "--points",
+        "100",
+        "--deny",
+        "beyond-range",
+    ];
+    let (code, printed, said) = run(&dir, &args);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("beyond-range: found"), "{said}");
+    for part in [
+        "conclusions beyond the range: 2",
+        "line 12: y is far  ┆ 500       ┆ 0 to 1",
+        "line 13: y is line ┆ 9 to 39   ┆ 0 to 1",
+        "the output leaves its range",
+    ] {
+        assert!(printed.contains(part), "`{part}` not in {printed}");
+    }
+    let convert = ["convert", "design.fll", "--to"];
+    let (_, made, _) = run(&dir, &[&convert[..], &["rust"]].concat());
+    assert!(
+        made.contains("by `far` (500), `line` (9 to 39) |"),
+        "{made}"
+    );
+    assert!(made.contains("range: [-LIMIT, LIMIT],\n            clamp: true"));
+    // The other output cannot leave its range: the compiler proves it again.
+    assert!(made.contains("range: [q16(\"0\"), q16(\"1\")],\n            clamp: false"));
+    let (code, ..) = run(&dir, &[&convert[..], &["c", "--out", "made.c"]].concat());
+    assert_eq!(code, 0);
+    let header = fs::read_to_string(dir.path().join("made.h")).unwrap();
+    assert!(header.contains("values may be beyond by `far` (500), `line` (9 to 39)"));
+    // Nothing is said of the error of what has no value.
+    assert!(header.contains("- z: no rule concludes it\n"), "{header}");
+    // Within the range nothing is found.
+    let inside = LINEAR.replace("range: 0 1\n", "range: 0 500\n");
+    let (code, _, said) = run(&with(&inside), &args);
+    assert_eq!(code, 0, "{said}");
+}
+
+#[test]
+fn without_a_table_turns_are_looked_for_on_the_grid() {
+    let designs = concat!(env!("CARGO_MANIFEST_DIR"), "/designs/");
+    let dir = tempdir().unwrap();
+    for (design, why, turns) in [
+        (
+            "watering.fcl",
+            "minutes: no table: rule 1 (line 40) has an OR",
+            true,
+        ),
+        (
+            "greenhouse.fll",
+            "vents: no table: 4 inputs make no table",
+            true,
+        ),
+        (
+            "cruise.fis",
+            "rule 1 (line 42) does not ask about each input once",
+            false,
+        ),
+    ] {
+        let file = format!("{designs}{design}");
+        let (code, printed, said) = run(
+            &dir,
+            &[
+                "check",
+                &file,
+                "--points",
+                "10000",
+                "--deny",
+                "non-monotone",
+            ],
+        );
+        assert_eq!(code, i32::from(turns), "{design}: {said}");
+        assert!(printed.contains(why), "{printed}");
+        assert!(printed.contains("of the range, sampled"), "{printed}");
+    }
+}
+
+#[test]
+fn what_the_lists_cut_is_in_the_file() {
+    let mut spare = String::new();
+    for i in 0..30 {
+        let _ = writeln!(spare, "  term: spare{i} Triangle 4 5 6");
+    }
+    let dir = with(&NARROW.replace("RuleBlock:", &format!("{spare}RuleBlock:")));
+    let args = [
+        "check",
+        "design.fll",
+        "--points",
+        "100",
+        "--json",
+        "all.json",
+    ];
+    let (code, printed, _) = run(
+        &dir,
+        &[&args[..], &["--deny", "unreachable-terms"]].concat(),
+    );
+    assert_eq!(code, 1);
+    assert!(printed.contains("unreachable terms: 33\n"), "{printed}");
+    assert!(
+        printed.contains("… and 13 more; --json FILE writes all"),
+        "{printed}"
+    );
+    let all = json(&dir, "all.json");
+    let terms = all["unreachable_terms"].as_array().unwrap();
+    assert_eq!(terms.len(), 33);
+    assert_eq!(terms[32]["term"], "y is spare29");
+    assert_eq!(terms[32]["line"], 45);
+    assert_eq!(all["search"], "exact");
+    assert_eq!(all["gaps"][0]["example"]["x"], 5.0);
+}
