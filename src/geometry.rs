@@ -1,7 +1,6 @@
 //! Points and poses in the plane, in fixed point. x forward (or east), y left (or north), counter-clockwise positive.
 
 use crate::integer::{saturate, square_root};
-use crate::signals::Turn;
 use crate::units::{Angle, Metres};
 use fixed::types::I2F30;
 
@@ -134,18 +133,36 @@ impl Rotation {
         Self::from_bits(cos as i32, sin as i32)
     }
 
-    /// A little further to the side: by the angle with this tangent, 32 fractional bits. It gets longer by half the
+    /// A little further, counter-clockwise: by the angle with this tangent, 32 fractional bits. It gets longer by half the
     /// tangent's square.
     #[inline(always)]
-    pub(crate) const fn nudged(self, side: Turn, tangent: i32) -> Self {
-        let (cos, sin) = (self.cos.to_bits(), self.sin.to_bits());
-        // A constant tangent makes these the upper half of a product, an instruction each.
-        let along = ((cos as i64).wrapping_mul(tangent as i64) >> 32) as i32;
-        let beside = ((sin as i64).wrapping_mul(tangent as i64) >> 32) as i32;
-        match side {
-            Turn::Left => Self::from_bits(cos.wrapping_sub(beside), sin.wrapping_add(along)),
-            Turn::Right => Self::from_bits(cos.wrapping_add(beside), sin.wrapping_sub(along)),
-        }
+    pub(crate) const fn nudged(self, tangent: i32) -> Self {
+        let (along, beside) = self.shares(tangent);
+        Self::from_bits(
+            self.cos.to_bits().wrapping_sub(beside),
+            self.sin.to_bits().wrapping_add(along),
+        )
+    }
+
+    /// [`nudged`](Self::nudged) the other way.
+    #[inline(always)]
+    pub(crate) const fn nudged_back(self, tangent: i32) -> Self {
+        let (along, beside) = self.shares(tangent);
+        Self::from_bits(
+            self.cos.to_bits().wrapping_add(beside),
+            self.sin.to_bits().wrapping_sub(along),
+        )
+    }
+
+    /// A share of cosine and sine, 32 fractional bits. A constant one makes each the upper half of a product, an
+    /// instruction.
+    #[inline(always)]
+    const fn shares(self, share: i32) -> (i32, i32) {
+        let (cos, sin) = (self.cos.to_bits() as i64, self.sin.to_bits() as i64);
+        (
+            (cos.wrapping_mul(share as i64) >> 32) as i32,
+            (sin.wrapping_mul(share as i64) >> 32) as i32,
+        )
     }
 
     /// The angle turned by.

@@ -376,7 +376,7 @@ fn the_edge_is_half_an_angle_beside_the_bearing() {
                 // As long as one: a metre along itself is a metre.
                 let along = edge.along(edge.ahead(metres(1.0)));
                 let squared: f64 = along.get().to_num();
-                assert!((squared - 1.0).abs() < 2.0 / 16_384.0, "{squared}");
+                assert!((squared - 1.0).abs() < 1.0 / 4096.0, "{squared}");
             }
         }
     }

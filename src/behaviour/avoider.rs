@@ -89,9 +89,11 @@ pub fn avoid(
         let Some((other, passed)) = sensed.obstacles.iter().zip(&mut passed).find(blocking) else {
             break;
         };
-        way = other
-            .unfeasible_edge(grown, side)
-            .nudged(side, EDGE_TANGENT);
+        let edge = other.unfeasible_edge(grown, side);
+        way = match side {
+            Turn::Left => edge.nudged(EDGE_TANGENT),
+            Turn::Right => edge.nudged_back(EDGE_TANGENT),
+        };
         (*passed, pushed) = (true, true);
     }
     if pushed {

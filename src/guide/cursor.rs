@@ -6,7 +6,8 @@ use super::local::Local;
 use super::path::{Path, next};
 use super::preview::{Allowed, Preview};
 use crate::geometry::{Point, Pose, square};
-use crate::units::{Metres, PerMetre};
+use crate::units::{Metres, MetresPerSecond, PerMetre};
+use fixed::types::I16F16;
 
 /// The most pieces that one tick looks at. Points closer than a thirty-second of what the robot drives in a tick
 /// leave the cursor behind; space them wider.
@@ -158,13 +159,26 @@ impl Cursor {
         path.piece(index).curvature()
     }
 
-    /// Square of the speed that the path ahead allows, m²/s² with 32 fractional bits: what braking still brings down to
-    /// √(lateral acceleration/κ) in every bend, to the corner speed at every corner of more than 15° and to rest at an
-    /// open end. Looks as far as braking from the top speed needs. In one tick a few pieces are looked at anew; where
-    /// that is not as far as it needs, the rest may be an end, too.
-    pub(crate) fn speed_limit_squared(&mut self, path: &Path<'_>, allowed: &Allowed) -> u64 {
+    /// Square of the speed that the path ahead allows, m²/s² with 32 fractional bits: what braking at `braking` m/s²
+    /// still brings down to √(`lateral`/κ) in every bend, to `corner` at every corner of more than 15° and to rest at
+    /// an open end. Looks as far as braking from `top` needs. In one tick a few pieces are looked at anew; where that is
+    /// not as far as it needs, the rest may be an end, too.
+    pub fn speed_limit_squared(
+        &mut self,
+        path: &Path<'_>,
+        top: MetresPerSecond,
+        braking: I16F16,
+        lateral: I16F16,
+        corner: Metres,
+    ) -> u64 {
         let here = self.driven.wrapping_add(self.along.bits());
-        self.preview.limit_squared(path, here, allowed)
+        let allowed = Allowed {
+            top,
+            braking,
+            lateral,
+            corner,
+        };
+        self.preview.limit_squared(path, here, &allowed)
     }
 }
 

@@ -9,7 +9,6 @@
 
 use super::cursor::Cursor;
 use super::path::Path;
-use super::preview::Allowed;
 use crate::geometry::{Point, Pose, root, square};
 use crate::integer::saturate;
 use crate::params::{Follower, Law, Limits};
@@ -84,19 +83,19 @@ pub fn pace(
     cursor: &mut Cursor,
     guidance: &Guidance,
 ) -> MetresPerSecond {
-    let allowed = Allowed {
-        top: limits.speed,
-        braking: limits.acceleration,
-        lateral: follower.lateral_acceleration,
-        corner: Metres::from_bits(follower.corner_speed.bits()),
-    };
     let squared = if is_elsewhere(follower, guidance.remaining, guidance.distance) {
         // The way to a missed end is straight, and ends there.
         let gain =
             i64::from(limits.acceleration.to_bits()).wrapping_mul(guidance.distance.bits().into());
         gain.unsigned_abs().saturating_mul(2)
     } else {
-        cursor.speed_limit_squared(path, &allowed)
+        cursor.speed_limit_squared(
+            path,
+            limits.speed,
+            limits.acceleration,
+            follower.lateral_acceleration,
+            Metres::from_bits(follower.corner_speed.bits()),
+        )
     };
     // Most of the way the robot's own top speed is allowed: then there is no root.
     if squared >= square(Metres::from_bits(limits.speed.bits())) {
