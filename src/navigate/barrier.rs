@@ -16,8 +16,10 @@
 //! * the first such point is known while full braking still stays clear of it, which at speed v is v·(period + latency) +
 //!   v²/2a and the margin ahead of it.
 //!
-//! Then no known point is ever touched: if the command passed last period, braking in full now is the tail of the way that
-//! was found clear then, so there is always a twist that passes. `tests/navigate_barrier.rs` holds that as a property.
+//! Then no known point is touched: if the command passed last period, braking in full now is the tail of the way that was
+//! found clear then, so there is always a twist that passes. **Open end**: the tail is found clear in steps of half a period
+//! and of 0.24 mm, and found again in others. A reckless driver (`tests/navigate_barrier.rs`) among up to 30 random points
+//! within 2 m touched one in 13 of 60,000 runs of 5 s, none of them in the 2,000 that the test repeats.
 //! **Outside of it**: moving obstacles, what no sensor has seen, wheels that slip, and a cone whose echo was explained by a
 //! neighbouring point (its obstacle may stand up to half the cone's arc beside the point).
 

@@ -6,13 +6,17 @@
 use super::footprint::Outline;
 use super::near::Near;
 use super::steps::{Bearing, Steps, Vector};
+use crate::geometry::Point;
 use crate::integer::{quotient, ratio, saturate};
 use crate::signals::Twist;
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond, Seconds};
 use heapless::Vec;
 
 /// The most steps of a trajectory.
-pub const MAX_STEPS: usize = 40;
+pub const MAX_STEPS: usize = 48;
+
+/// The most steps of an arc.
+const ARC_STEPS: usize = 40;
 
 /// A pose of the body, in its frame of the beginning.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +29,8 @@ struct Placed {
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     poses: Vec<Placed, MAX_STEPS>,
-    at: Vector,
+    // Finer than the poses: what many steps lose by rounding is more than a margin has to spare.
+    at: Point,
     heading: Angle,
     /// The longest step, and the largest turn in one.
     advance: Steps,
@@ -46,7 +51,7 @@ impl Trajectory {
     pub const fn new() -> Self {
         Self {
             poses: Vec::new(),
-            at: Vector::new(Steps::ZERO, Steps::ZERO),
+            at: Point::new(Metres::ZERO, Metres::ZERO),
             heading: Angle::ZERO,
             advance: Steps::ZERO,
             turn: Angle::ZERO,
@@ -63,7 +68,7 @@ impl Trajectory {
         let turn = Angle::from_radians(curvature.get().saturating_mul(
             fixed::types::I16F16::from_bits(step.bits().wrapping_mul(16)),
         ));
-        for _ in 0..MAX_STEPS {
+        for _ in 0..ARC_STEPS {
             if Self::STEP
                 .bits()
                 .wrapping_mul(trajectory.poses.len() as i32)
@@ -71,46 +76,49 @@ impl Trajectory {
             {
                 break;
             }
-            trajectory.go(step, turn);
+            trajectory.go(step.metres(), turn);
         }
         trajectory
     }
 
-    /// A period in which the twist goes from `driven` to `twist`, then both parts braked to rest, a step a period. What has
-    /// not come to rest after [`MAX_STEPS`] ends there.
+    /// A period in which the twist goes from `driven` to `twist`, then both parts braked to rest, two steps a period: in a
+    /// whole one a corner that turns at 3 rad/s goes 5 cm and may pass a point that neither end shows. What has not
+    /// come to rest after [`MAX_STEPS`] ends there.
     pub fn braked(driven: Twist, twist: Twist, brakes: Brakes) -> Self {
         let mut trajectory = Self::new();
         let (mut before, mut now) = (driven, twist);
-        for _ in 0..MAX_STEPS {
+        for _ in 0..MAX_STEPS / 2 {
             let mean = brakes.mean(before, now);
             if mean == Twist::REST && now == Twist::REST {
                 break;
             }
-            let way = Steps::of(mean.linear.over(brakes.period));
-            trajectory.go(way, mean.angular.over(brakes.period));
+            let half = Seconds::from_bits(brakes.period.bits() >> 1);
+            let (way, turn) = (mean.linear.over(half), mean.angular.over(half));
+            trajectory.go(way, turn);
+            trajectory.go(way, turn);
             (before, now) = (now, brakes.applied(now));
         }
         trajectory
     }
 
-    fn go(&mut self, way: Steps, turn: Angle) {
+    fn go(&mut self, way: Metres, turn: Angle) {
         let middle = self.heading + Angle::from_bits(turn.bits() >> 1);
-        self.at = self.at + Bearing::of(middle).ahead(way);
+        self.at = self.at + Point::polar(way, middle);
         self.heading = self.heading + turn;
-        self.advance = self.advance.max(way.abs());
+        self.advance = self.advance.max(Steps::of(way.abs()) + Steps::from_bits(1));
         if turn.abs().bits() > self.turn.bits() {
             self.turn = turn.abs();
         }
         // The callers' loops end before it is full.
         let _ = self.poses.push(Placed {
-            at: self.at,
+            at: Vector::of(self.at),
             turn: Bearing::of(self.heading),
         });
     }
 
     /// Where it ends.
     pub fn end(&self) -> Vector {
-        self.at
+        Vector::of(self.at)
     }
 
     /// Steps.
