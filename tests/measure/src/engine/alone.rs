@@ -48,7 +48,7 @@ pub fn look(machine: &Machine, images: &Images) -> anyhow::Result<Alone> {
         if name == "fine_controller" && symbol.kind() == SymbolKind::Text {
             code = symbol.size();
         }
-        if FOREIGN.iter().any(|part| name.contains(part)) {
+        if FOREIGN.iter().any(|part| without_hash(name).contains(part)) {
             foreign.push(name);
         }
     }
@@ -63,6 +63,14 @@ pub fn look(machine: &Machine, images: &Images) -> anyhow::Result<Alone> {
         flash: u32::try_from(flash)?,
         memory: footprint::of(&image)?.ram,
     })
+}
+
+/// A symbol without the hash that rustc ends it with: sixteen digits may spell anything.
+fn without_hash(name: &str) -> &str {
+    match name.rsplit_once("17h") {
+        Some((path, hash)) if hash.len() == 17 && hash.ends_with('E') => path,
+        _ => name,
+    }
 }
 
 /// That the check would tell: with one `unwrap` more the image does not link, and the linker says why.
