@@ -78,7 +78,7 @@ pub fn sense_ranges<const N: usize>(
     for (index, reading) in readings.iter().enumerate().take(MAX_BEAMS) {
         let range = judge(ring, reading, speed);
         if !matches!(range, Range::Invalid(_)) {
-            sensed.valid = sensed.valid.saturating_add(1);
+            sensed.valid = sensed.valid.wrapping_add(1);
         }
         let Range::Echo(distance) = range else {
             if let Some(run) = &open {
@@ -110,7 +110,7 @@ pub fn sense_ranges<const N: usize>(
         let _ = sensed.spreads.push(spread);
         match &mut open {
             Some(run) if near(point, run.last) => {
-                run.count = run.count.saturating_add(1);
+                run.count = run.count.wrapping_add(1);
                 run.last = point;
                 run.nearest = run.nearest.min(from_centre);
                 run.spread = run.spread.max(spread);
@@ -138,7 +138,7 @@ pub fn sense_ranges<const N: usize>(
             turn_round(&mut sensed.echoes, last.start);
             turn_round(&mut sensed.spreads, last.start);
             last.start = 0;
-            last.count = last.count.saturating_add(first.count);
+            last.count = last.count.wrapping_add(first.count);
             last.last = first.last;
             last.nearest = last.nearest.min(first.nearest);
             last.spread = last.spread.max(first.spread);
