@@ -14,6 +14,12 @@ pub struct Input {
     end: usize,
 }
 
+impl Default for Input {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Input {
     /// Not opened.
     pub const fn new() -> Self {
@@ -52,6 +58,12 @@ pub struct Output {
     block: [u8; BLOCK],
     filled: usize,
     whole: bool,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Output {
