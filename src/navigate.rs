@@ -20,6 +20,7 @@ mod escape;
 mod field;
 mod footprint;
 mod heading;
+mod health;
 mod memory;
 mod near;
 mod params;
@@ -35,6 +36,7 @@ pub use barrier::{BarrierParams, Guarded, gate, slow};
 pub use field::{Field, FieldParams};
 pub use footprint::{Footprint, MAX_VERTICES, Outline};
 pub use heading::{Heading, HeadingParams};
+pub use health::{Health, HealthParams};
 pub use memory::{CAPACITY, Memory, MemoryParams};
 pub use near::{MAX_NEAR, Motion, Near};
 pub use params::{NavigatorParams, Setup};
@@ -81,12 +83,15 @@ pub struct NavigationRecord {
     pub clearance: Metres,
     /// Points remembered.
     pub points: u16,
+    /// Sensors that seem dead, a bit each in the order of their mounts.
+    pub dead: u32,
 }
 
 /// All that the navigator remembers from tick to tick.
 #[derive(Clone, Debug)]
 pub struct Navigator<const N: usize> {
     echoes: Echoes<N>,
+    health: Health<N>,
     memory: Memory,
     near: Near,
     map: PolarMap,
@@ -117,6 +122,7 @@ impl<const N: usize> Navigator<N> {
     pub const fn new() -> Self {
         Self {
             echoes: Echoes::new(),
+            health: Health::new(),
             memory: Memory::new(),
             near: Near::new(),
             map: PolarMap::new(),
@@ -164,6 +170,7 @@ impl<const N: usize> Navigator<N> {
     pub fn step(&mut self, setup: &Setup<N>, pose: Pose, task: Task<'_>) -> NavigationRecord {
         let p = &setup.params;
         let outline = &setup.outline;
+        self.health.update(&p.health, self.echoes.as_slice());
         self.memory.update(
             &p.memory,
             outline,
@@ -172,6 +179,14 @@ impl<const N: usize> Navigator<N> {
             pose,
             self.last.linear,
         );
+        let dead = self.health.dead(&p.health);
+        for (index, eye) in (0..32usize).zip(setup.eyes.as_slice()) {
+            if dead >> index & 1 == 1
+                && let Some(range) = Health::<N>::lent(&p.health, self.echoes.as_slice(), index)
+            {
+                self.memory.assume(&p.memory, eye, range);
+            }
+        }
         // What is decided now acts after the latency; until then the last command does.
         let moved = Motion::of(setup.brakes.mean(self.before, self.last), p.latency);
         let ahead = moved.from(pose);
@@ -226,6 +241,7 @@ impl<const N: usize> Navigator<N> {
             direction: course.direction,
             clearance: self.near.clearance().metres(),
             points: self.memory.len() as u16,
+            dead,
         }
     }
 
@@ -382,8 +398,9 @@ impl<const N: usize> Navigator<N> {
     fn guard(&self, setup: &Setup<N>, wanted: Twist) -> Guarded {
         let p = &setup.params;
         let room = (self.map.left, self.map.right);
+        let fastest = p.limits.speed.min(self.health.cap(&p.health, &setup.eyes));
         let wanted = Twist {
-            linear: wanted.linear.min(p.limits.speed).max(-p.reverse),
+            linear: wanted.linear.min(fastest).max(-p.reverse),
             angular: wanted
                 .angular
                 .limit(RadiansPerSecond::new(p.limits.yaw_rate)),

@@ -4,9 +4,11 @@
 use fixed::types::I16F16;
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::guide::{Path, Segment};
-use fuzzypilot::navigate::{Manoeuvre, Navigator, NavigatorParams, RangeSet, Setup, Task, presets};
+use fuzzypilot::navigate::{
+    Manoeuvre, NavigationRecord, Navigator, NavigatorParams, RangeSet, Setup, Task, presets,
+};
 use fuzzypilot::ports::{Fault, Range, RangeReading};
-use fuzzypilot::units::{Angle, Metres, Seconds};
+use fuzzypilot::units::{Angle, Metres, MetresPerSecond, Seconds};
 use std::f64::consts::{PI, TAU};
 
 const PERIOD: f64 = 0.05;
@@ -233,7 +235,19 @@ fn an_open_field_is_crossed_straight_at_full_speed() {
 fn a_slalom_is_driven_with_every_preset() {
     let goal = [8.0, 0.0];
     arrived(&to_goal(presets::jackal::<16>(), &slalom(), goal), goal);
-    arrived(&to_goal(presets::jackal::<8>(), &slalom(), goal), goal);
+    arrived(
+        &to_goal(presets::jackal_eight::<8>(), &slalom(), goal),
+        goal,
+    );
+    arrived(
+        &to_goal(presets::ultrasonic_five::<5>(), &slalom(), goal),
+        goal,
+    );
+    // As if every sector of a lidar heard the nearest thing across it.
+    arrived(
+        &to_goal(presets::jackal_lidar::<32>(), &slalom(), goal),
+        goal,
+    );
 }
 
 /// A pocket two metres deep, open to the robot's side.
@@ -327,6 +341,70 @@ fn silence_is_not_free_space() {
         let record = navigator.step(&setup, Pose::default(), Task::Goal(point([5.0, 0.0])));
         assert_eq!(record.points, seen.points, "{silent:?}");
     }
+}
+
+/// A standing robot whose cones hear these ranges for some ticks, metres; 0 is nothing. Its navigator and last decision.
+fn hearing(ranges: [f64; 16], ticks: usize) -> (Navigator<16>, NavigationRecord) {
+    let setup = presets::jackal::<16>().setup().unwrap();
+    let mut navigator: Navigator<16> = Navigator::new();
+    let readings = ranges.map(|range| {
+        RangeReading::fresh(if range > 0.0 {
+            Range::Echo(metres(range))
+        } else {
+            Range::Clear
+        })
+    });
+    let mut record = NavigationRecord::default();
+    for _ in 0..ticks {
+        navigator.see(&setup, &readings);
+        record = navigator.step(&setup, Pose::default(), Task::Goal(point([50.0, 0.0])));
+    }
+    (navigator, record)
+}
+
+#[test]
+fn a_dead_cone_ahead_is_found_out_and_caps_the_speed() {
+    let mut ranges = [2.0; 16];
+    assert_eq!(hearing(ranges, 60).1.dead, 0);
+    ranges[8] = 0.0;
+    let (_, record) = hearing(ranges, 60);
+    assert_eq!(record.dead, 1 << 8);
+    assert!(record.twist.linear <= MetresPerSecond::lit("0.5"));
+    // At a side it is told, but costs no speed.
+    ranges[8] = 2.0;
+    ranges[2] = 0.0;
+    let (_, record) = hearing(ranges, 60);
+    assert_eq!(record.dead, 1 << 2);
+    assert!(record.twist.linear > MetresPerSecond::lit("0.9"));
+}
+
+#[test]
+fn an_open_field_makes_no_cone_dead() {
+    let (_, record) = hearing([0.0; 16], 60);
+    assert_eq!(record.dead, 0);
+    assert!(record.twist.linear > MetresPerSecond::lit("0.9"));
+}
+
+/// What its neighbour hears close by may stand in the dead cone, too.
+#[test]
+fn a_dead_cone_is_not_taken_for_free() {
+    let mut ranges = [2.0; 16];
+    ranges[8] = 0.0;
+    ranges[9] = 0.5;
+    let in_cone = |ranges: [f64; 16]| {
+        let (navigator, _) = hearing(ranges, 60);
+        // Cone 8 looks from straight ahead to 16.9° left.
+        let points = navigator.memory().points();
+        points
+            .filter(|place| {
+                let [x, y] = [place.x, place.y].map(|v| f64::from(v.bits()));
+                (0.0..0.29).contains(&y.atan2(x))
+            })
+            .count()
+    };
+    assert!(in_cone(ranges) > 0);
+    ranges[9] = 2.0;
+    assert_eq!(in_cone(ranges), 0);
 }
 
 #[test]

@@ -144,6 +144,19 @@ impl Memory {
         }
     }
 
+    /// Assumes that something stands at a range across a sensor's cone, unless a point there says so already.
+    pub(super) fn assume(&mut self, params: &MemoryParams, eye: &Eye, range: Steps) {
+        let support = Steps::of(params.support);
+        let known = self.points().any(|place| {
+            let from_eye = place - eye.at;
+            let off = from_eye.norm() - range;
+            eye.view(from_eye) != View::Outside && off.abs() < support
+        });
+        if !known {
+            self.insert_arc(params, eye, Echo::Across(range));
+        }
+    }
+
     /// Forgets what can be seen again or is far: everything but the near points that no sensor looks at.
     pub fn forget_doubtful<const N: usize>(&mut self, eyes: &Eyes<N>, outline: &Outline) {
         const NEAR: Steps = Steps::lit("0.5");

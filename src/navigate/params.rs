@@ -4,6 +4,7 @@ use super::barrier::BarrierParams;
 use super::field::{Costs, FieldParams};
 use super::footprint::{Footprint, Outline};
 use super::heading::{HeadingParams, Weights};
+use super::health::HealthParams;
 use super::memory::MemoryParams;
 use super::polar::MapParams;
 use super::sensors::{Eyes, RangeSet};
@@ -30,6 +31,8 @@ pub struct NavigatorParams<const N: usize> {
     pub latency: Seconds,
     /// Range sensors.
     pub sensors: RangeSet<N>,
+    /// When one of them counts as dead.
+    pub health: HealthParams,
     /// Local memory.
     pub memory: MemoryParams,
     /// Polar map.
@@ -155,6 +158,13 @@ impl<const N: usize> NavigatorParams<N> {
             "barrier.share",
             "0 to 1",
         )?;
+        range(
+            self.supervisor.patience >= 9,
+            "supervisor.patience",
+            "9 ticks or more",
+        )?;
+        positive(self.health.doubts > 0, "health.doubts")?;
+        positive(self.health.speed > MetresPerSecond::ZERO, "health.speed")?;
         range(
             self.barrier.gate >= Metres::ZERO,
             "barrier.gate",

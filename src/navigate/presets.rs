@@ -2,32 +2,69 @@
 //! [`NavigatorParams::setup`].
 
 use super::{
-    BarrierParams, FieldParams, Footprint, HeadingParams, MapParams, MemoryParams, NavigatorParams,
-    RangeSet, SteerParams, SupervisorParams,
+    BarrierParams, FieldParams, Footprint, HeadingParams, HealthParams, MapParams, MemoryParams,
+    NavigatorParams, RangeSet, SteerParams, SupervisorParams,
 };
 use crate::geometry::Point;
 use crate::params::Limits;
 use crate::presets::FOLLOWER;
 use crate::tables::clutter::CLUTTER;
-use crate::units::{Angle, Metres, MetresPerSecond, Seconds};
-use fixed::types::I16F16;
+use crate::units::{Angle, MetresPerSecond};
 
 /// Numbers that are parsed while this compiles: at run time the parser would cost 20 KiB of flash.
 macro_rules! n {
     ($text:literal) => {
-        const { I16F16::lit($text) }
+        const { fixed::types::I16F16::lit($text) }
     };
 }
 
 macro_rules! m {
     ($text:literal) => {
-        const { Metres::lit($text) }
+        const { crate::units::Metres::lit($text) }
     };
 }
+
+macro_rules! s {
+    ($text:literal) => {
+        const { crate::units::Seconds::lit($text) }
+    };
+}
+
+// What tuning found for each kind of sensors.
+pub mod eight;
+pub mod five;
+pub mod lidar;
+pub mod sixteen;
 
 /// The robot of the BARN benchmark (a Clearpath Jackal, 0.508 × 0.430 m), 1 m/s, 20 Hz with 50 ms latency, `N` cones or
 /// lidar sectors over 270°.
 pub fn jackal<const N: usize>() -> NavigatorParams<N> {
+    sixteen::tuned(base())
+}
+
+/// [`jackal`] with a lidar that is reduced to `N` sectors: its echoes have a direction.
+pub fn jackal_lidar<const N: usize>() -> NavigatorParams<N> {
+    lidar::tuned(base())
+}
+
+/// [`jackal`] with 8 cones side by side over 270°.
+pub fn jackal_eight<const N: usize>() -> NavigatorParams<N> {
+    eight::tuned(base())
+}
+
+/// [`jackal`] with 5 ultrasonic sensors of 30°, 45° apart: between them and behind nothing is seen.
+pub fn ultrasonic_five<const N: usize>() -> NavigatorParams<N> {
+    const FIELD: Angle = Angle::from_bits(-0x6000_0000);
+    let mut params = base();
+    params.sensors = RangeSet::sectors(Point::default(), FIELD, m!("4"), s!("0.2"));
+    for mount in &mut params.sensors.mounts {
+        mount.width = const { Angle::deg("30") };
+    }
+    five::tuned(params)
+}
+
+/// What tuning leaves alone.
+fn base<const N: usize>() -> NavigatorParams<N> {
     NavigatorParams {
         footprint: Footprint::Rectangle {
             front: m!("0.254"),
@@ -42,14 +79,22 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
             wheel_speed: const { MetresPerSecond::lit("2.5") },
         },
         reverse: const { MetresPerSecond::lit("0.3") },
-        period: const { Seconds::lit("0.05") },
-        latency: const { Seconds::lit("0.05") },
+        period: s!("0.05"),
+        latency: s!("0.05"),
         sensors: RangeSet::sectors(
             Point::default(),
             const { Angle::from_bits(-0x4000_0000) },
             m!("4"),
-            const { Seconds::lit("0.2") },
+            s!("0.2"),
         ),
+        health: HealthParams {
+            near: m!("2"),
+            doubts: 80,
+            unproven: 72,
+            ahead: const { Angle::deg("30") },
+            speed: const { MetresPerSecond::lit("0.5") },
+            lend: m!("0.7"),
+        },
         memory: MemoryParams {
             insert: m!("1.157"),
             arc: n!("0.4553"),
@@ -97,7 +142,7 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
         follower: FOLLOWER,
         supervisor: SupervisorParams {
             enter: m!("0.5375"),
-            enter_time: const { Seconds::lit("0.3893") },
+            enter_time: s!("0.3893"),
             path_margin: m!("0.12"),
             leave: m!("0.06"),
             dwell: 5,
@@ -105,8 +150,8 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
             still: 9,
             escape: m!("0.3728"),
             escape_ticks: 51,
-            progress: m!("0.4"),
-            patience: 90,
+            progress: m!("0.5"),
+            patience: 81,
             pause: 20,
             strikes: 8,
             give_up: 1200,
@@ -118,17 +163,5 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
             share: n!("0.887"),
             gate: m!("0.015"),
         },
-    }
-}
-
-/// [`jackal`] with a lidar: its echoes have a direction, so that points are worth keeping from farther away.
-pub fn jackal_lidar<const N: usize>() -> NavigatorParams<N> {
-    let jackal = jackal();
-    NavigatorParams {
-        memory: MemoryParams {
-            insert: m!("2"),
-            ..jackal.memory
-        },
-        ..jackal
     }
 }

@@ -57,13 +57,14 @@ pub struct SupervisorParams {
     pub escape: Metres,
     /// …and ticks after which it does.
     pub escape_ticks: u16,
-    /// Who is not this far from where he was…
+    /// Who stays this near to where he was…
     pub progress: Metres,
-    /// …after this many ticks makes no progress: it stops, says so, and forgets doubtful points.
+    /// …for this many ticks makes no progress: it stops, says so, and forgets doubtful points. Places are noted nine times
+    /// in that time, so it may take a ninth longer.
     pub patience: u16,
     /// Ticks of standing before it tries again.
     pub pause: u16,
-    /// That often in a row, and the robot is blocked for good.
+    /// That often at one place, and the robot is blocked for good.
     pub strikes: u8,
     /// Who comes no nearer to the goal by `progress` for this many ticks is blocked for good.
     pub give_up: u16,
@@ -101,6 +102,57 @@ pub(super) struct Decided {
     pub shun: bool,
 }
 
+/// Places noted in a row.
+const NOTED: usize = 9;
+
+/// Where the robot was, at even times, and which of these places it has left since.
+#[derive(Clone, Copy, Debug)]
+struct Trail {
+    places: [Point; NOTED],
+    /// A bit for each place that it has not left.
+    stayed: u16,
+    next: u8,
+    ticks: u16,
+}
+
+impl Trail {
+    const NONE: Self = Self {
+        places: [Point::new(Metres::ZERO, Metres::ZERO); NOTED],
+        stayed: 0,
+        next: 0,
+        ticks: 0,
+    };
+
+    /// Takes over a tick's place. Whether the robot has stayed near the oldest place for all the time since: near a place
+    /// that was noted at any time, so that it does not matter when a stall began.
+    fn stalls(&mut self, params: &SupervisorParams, at: Point) -> bool {
+        if let Some(left) = self.ticks.checked_sub(1) {
+            self.ticks = left;
+            return false;
+        }
+        self.ticks = (params.patience / NOTED as u16).saturating_sub(1);
+        let reach = square(params.progress);
+        for (bit, place) in (0..16u32).zip(&self.places) {
+            if (at - *place).norm_squared() > reach {
+                self.stayed &= !(1 << bit);
+            }
+        }
+        let Some(oldest) = self.places.get_mut(usize::from(self.next)) else {
+            return false;
+        };
+        *oldest = at;
+        let bit = 1u16 << self.next;
+        let stalled = self.stayed & bit != 0;
+        self.stayed |= bit;
+        self.next = if usize::from(self.next) + 1 < NOTED {
+            self.next.wrapping_add(1)
+        } else {
+            0
+        };
+        stalled
+    }
+}
+
 /// What the higher level remembers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
@@ -110,9 +162,10 @@ pub(super) struct State {
     still: u16,
     /// Where the escape began.
     from: Point,
-    anchor: Point,
-    anchored: u16,
+    trail: Trail,
+    /// How often it made no progress within twice `progress` of a place.
     strikes: u8,
+    struck: Point,
     least: Metres,
     since_least: u16,
 }
@@ -125,9 +178,9 @@ impl State {
             stuck: 0,
             still: 0,
             from: Point::new(Metres::ZERO, Metres::ZERO),
-            anchor: Point::new(Metres::ZERO, Metres::ZERO),
-            anchored: 0,
+            trail: Trail::NONE,
             strikes: 0,
+            struck: Point::new(Metres::ZERO, Metres::ZERO),
             least: Metres::MAX,
             since_least: 0,
         }
@@ -142,6 +195,9 @@ impl State {
                 manoeuvre: Manoeuvre::Blocked,
                 ..Decided::default()
             };
+        }
+        if self.manoeuvre == Manoeuvre::Blocked {
+            self.trail = Trail::NONE;
         }
         let forget = self.watch(params, now);
         let next = if now.at_goal {
@@ -197,18 +253,15 @@ impl State {
             self.since_least = 0;
         }
         self.since_least = self.since_least.saturating_add(1);
-        let away = (now.at - self.anchor).norm_squared() > square(params.progress);
-        if away || self.anchored == 0 {
-            self.anchor = now.at;
-            self.anchored = 1;
+        if !self.trail.stalls(params, now.at) {
+            return false;
+        }
+        let elsewhere =
+            (now.at - self.struck).norm_squared() > square(params.progress + params.progress);
+        if self.strikes == 0 || elsewhere {
+            self.struck = now.at;
             self.strikes = 0;
-            return false;
         }
-        self.anchored = self.anchored.saturating_add(1);
-        if self.anchored <= params.patience {
-            return false;
-        }
-        self.anchored = 1;
         self.strikes = self.strikes.saturating_add(1);
         true
     }

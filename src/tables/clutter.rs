@@ -21,45 +21,68 @@ const ANTECEDENTS: Antecedents<3, 3> = Antecedents {
     cols: Partition::new([I16F16::lit("0"), I16F16::lit("45"), I16F16::lit("90")]),
 };
 
-const DEFLECTIONS: Consequents<5, Deflection> = Consequents::new(
-    [Deflection::lit("0"), Deflection::lit("90")],
-    [
+/// Peaks of the two outputs' terms VS to VB, ascending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Peaks {
+    /// Of the deflection, 0° to 90°.
+    pub deflection: [Deflection; 5],
+    /// Of the speed, as shares of the top speed, 0 to 1.
+    pub speed: [SpeedShare; 5],
+}
+
+impl Peaks {
+    /// Both tables with these peaks.
+    ///
+    /// # Panics
+    ///
+    /// If peaks do not ascend or lie outside their range; in a `const` or `static` that is a compile error. Not for the control
+    /// loop.
+    pub const fn tables(&self) -> CoarseTwin {
+        let deflections = Consequents::new(
+            const { [Deflection::lit("0"), Deflection::lit("90")] },
+            self.deflection,
+        );
+        let speeds = Consequents::new(
+            const { [SpeedShare::lit("0"), SpeedShare::lit("1")] },
+            self.speed,
+        );
+        #[rustfmt::skip]
+        let deflection: RuleTable<3, 3, Deflection> = RuleTable::new(
+            // α:  Z   M   L      s
+            [   [ VS, N,  VB ], // N
+                [ VS, N,  VB ], // M
+                [ VS, N,  VB ]],// F
+            deflections,
+        );
+        #[rustfmt::skip]
+        let speed: RuleTable<3, 3, SpeedShare> = RuleTable::new(
+            // α:  Z   M   L      s
+            [   [ S,  VS, VS ], // N
+                [ B,  N,  VS ], // M
+                [ VB, B,  VS ]],// F
+            speeds,
+        );
+        TwinTable::new(&ANTECEDENTS, &deflection, &speed)
+    }
+}
+
+/// Evenly spread peaks to start from.
+pub const PEAKS: Peaks = Peaks {
+    deflection: [
         Deflection::lit("0"),
         Deflection::lit("30"),
         Deflection::lit("45"),
         Deflection::lit("70"),
         Deflection::lit("90"),
     ],
-);
-
-const SPEEDS: Consequents<5, SpeedShare> = Consequents::new(
-    [SpeedShare::lit("0"), SpeedShare::lit("1")],
-    [
+    speed: [
         SpeedShare::lit("0.05"),
         SpeedShare::lit("0.3"),
         SpeedShare::lit("0.6"),
         SpeedShare::lit("0.8"),
         SpeedShare::lit("1"),
     ],
-);
+};
 
-#[rustfmt::skip]
-const DEFLECTION: RuleTable<3, 3, Deflection> = RuleTable::new(
-    // α:  Z   M   L      s
-    [   [ VS, N,  VB ], // N
-        [ VS, N,  VB ], // M
-        [ VS, N,  VB ]],// F
-    DEFLECTIONS,
-);
-
-#[rustfmt::skip]
-const SPEED: RuleTable<3, 3, SpeedShare> = RuleTable::new(
-    // α:  Z   M   L      s
-    [   [ S,  VS, VS ], // N
-        [ B,  N,  VS ], // M
-        [ VB, B,  VS ]],// F
-    SPEEDS,
-);
-
-/// Both tables.
-pub static CLUTTER: CoarseTwin = TwinTable::new(&ANTECEDENTS, &DEFLECTION, &SPEED);
+/// Both tables with [`PEAKS`].
+pub static CLUTTER: CoarseTwin = PEAKS.tables();
