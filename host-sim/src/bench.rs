@@ -30,5 +30,6 @@ pub mod seeds;
 pub mod sensors;
 pub mod shard;
 pub mod statistics;
+pub mod tuning;
 pub mod vehicle;
 pub mod worlds;

@@ -9,8 +9,10 @@ mod hil;
 mod list;
 mod merge;
 mod run;
+mod search;
 mod surface;
 mod sweep;
+mod tune;
 
 use anyhow::Context;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -65,6 +67,8 @@ enum Command {
     BenchTick(bench_tick::BenchArguments),
     /// Drive navigators through many worlds with many seeds on all cores, and print how often they arrive.
     Bench(Box<bench::BenchArguments>),
+    /// Tune the navigator's settings and rule tables by driving through many worlds.
+    Tune(Box<tune::TuneArguments>),
     /// Put the parts of a bench that was run with `--shard` together.
     Merge(merge::MergeArguments),
 }
@@ -78,6 +82,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
         Some(Command::Eval(arguments)) => eval::execute(&arguments),
         Some(Command::Surface(arguments)) => surface::execute(&arguments),
         Some(Command::Sweep(arguments)) => sweep::execute(&arguments),
+        Some(Command::Tune(arguments)) => tune::execute(&arguments),
         Some(Command::Errata(arguments)) => errata::execute(&arguments),
         Some(Command::Hil(arguments)) => hil::execute(&arguments),
         Some(Command::Fuzzy(arguments)) => fuzzy::execute(&arguments),

@@ -20,6 +20,7 @@ pub mod replay;
 pub mod robot;
 pub mod run;
 pub mod scenario;
+pub mod search;
 pub mod sensors;
 pub mod si;
 pub mod tables;

@@ -52,6 +52,11 @@ pub fn from_speed(x: MetresPerSecond) -> f64 {
     f64::from(x.bits()) / 65_536.0
 }
 
+/// Back to seconds.
+pub fn from_seconds(x: Seconds) -> f64 {
+    x.get().to_num()
+}
+
 /// Back to rad/s.
 pub fn from_rate(x: RadiansPerSecond) -> f64 {
     f64::from(x.bits()) / 65_536.0

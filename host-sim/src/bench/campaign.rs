@@ -4,6 +4,7 @@ use super::arena::Arena;
 use super::attempt::{Outcome, Setting, drive};
 use super::controllers::Controller;
 use super::discs::Discs;
+use super::navigator::{Mission, Navigator};
 use rayon::prelude::*;
 
 /// Worlds, seeds and all that is the same for their runs.
@@ -32,6 +33,15 @@ impl Campaign {
     /// Runs a controller through all of it: worlds in order, the seeds of each in order, whatever the number of
     /// threads. `done` is called after every run, from any thread.
     pub fn run(&self, controller: &Controller, done: &(dyn Fn() + Sync)) -> Vec<Run> {
+        self.run_with(&controller.build, done)
+    }
+
+    /// The same with a navigator that `build` makes for each run.
+    pub fn run_with(
+        &self,
+        build: &(dyn Fn(&Mission) -> Box<dyn Navigator> + Sync),
+        done: &(dyn Fn() + Sync),
+    ) -> Vec<Run> {
         let discs: Vec<Discs> = self
             .arenas
             .iter()
@@ -43,7 +53,7 @@ impl Campaign {
             .map(|job| {
                 let (world, seed) = (job / seeds, self.seeds[job % seeds]);
                 let arena = &self.arenas[world];
-                let mut navigator = (controller.build)(&self.setting.mission(arena));
+                let mut navigator = build(&self.setting.mission(arena));
                 let outcome = drive(
                     arena,
                     &discs[world],

@@ -10,6 +10,7 @@ use fuzzypilot::navigate::{
 };
 use fuzzypilot::params::{Limits, Mount};
 use fuzzypilot::ports::Range;
+use fuzzypilot::tables::clutter::Peaks;
 use fuzzypilot::units::{Angle, Metres};
 
 /// The most sensors, or sectors of a lidar.
@@ -42,13 +43,7 @@ impl Ours {
     ///
     /// If the mission's robot or sensors are none that the library can drive.
     pub fn new(mission: &Mission) -> Self {
-        let lidar = mission.sensors.len() > SENSORS;
-        let params = if lidar {
-            presets::jackal_lidar()
-        } else {
-            presets::jackal()
-        };
-        Self::with(mission, params)
+        Self::with(mission, preset(&mission.sensors).0)
     }
 
     /// With settings of one's own; body, limits, timing and sensors are the mission's.
@@ -118,6 +113,16 @@ impl Navigator for Ours {
                 Manoeuvre::Arrived => Mode::Arrived,
             },
         }
+    }
+}
+
+/// The library's preset for sensors like these, and the peaks of its rule tables.
+pub fn preset(views: &[BeamView]) -> (NavigatorParams<SENSORS>, Peaks) {
+    match views.len() {
+        0..=6 => (presets::ultrasonic_five(), presets::five::PEAKS),
+        7..=11 => (presets::jackal_eight(), presets::eight::PEAKS),
+        12..=SENSORS => (presets::jackal(), presets::sixteen::PEAKS),
+        _ => (presets::jackal_lidar(), presets::lidar::PEAKS),
     }
 }
 

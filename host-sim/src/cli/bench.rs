@@ -6,7 +6,8 @@ pub mod table;
 
 use super::{BadInput, check_folder_of, print, put, whole};
 use clap::Args;
-use conditions::{Task, Trouble};
+pub use conditions::Task;
+use conditions::Trouble;
 use host_sim::bench::attempt::Setting;
 use host_sim::bench::body::JACKAL;
 use host_sim::bench::campaign::Campaign;

@@ -6,7 +6,7 @@ mod design;
 mod eval;
 mod named;
 mod surface;
-mod table;
+pub mod table;
 mod tune;
 
 use clap::{Args, Subcommand, ValueEnum};

@@ -11,19 +11,16 @@
 mod changes;
 pub mod data;
 mod fit;
-mod hash;
 mod ladder;
 mod movable;
 mod numbers;
 mod search;
-pub mod state;
 
 pub use changes::{Change, changes};
 pub use fit::{Fit, OutputFit};
-pub use hash::Hash;
 pub use movable::{Movable, Selection};
 pub use numbers::Variable;
-pub use search::{Best, Outcome, Progress, Search, SearchError, Settings, Stop};
+pub use search::{Best, Outcome, Search};
 
 use super::lower::Lowered;
 use super::model::System;

@@ -6,22 +6,18 @@ mod result;
 
 use super::convert::refused;
 use super::design::Design;
-use crate::cli::{BadInput, Interrupted, check_folder, number, print, put, whole};
-use anyhow::Context;
+use crate::cli::search::{INTERRUPTED, bad, bar, listen, remember, show};
+use crate::cli::{BadInput, Interrupted, check_folder, number, print, whole};
 use clap::{ArgGroup, Args};
 use goal::Goal;
 use host_sim::fuzzy::model::System;
-use host_sim::fuzzy::tune::state::{Question, State};
-use host_sim::fuzzy::tune::{
-    Movable, Progress, Search, SearchError, Selection, Settings, Stop, Variable,
-};
+use host_sim::fuzzy::tune::{Movable, Search, Selection, Variable};
 use host_sim::scenario::shown;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use host_sim::search::state::{Question, State};
+use host_sim::search::{Settings, Stop};
 use report::Report;
 use result::Written;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Args)]
 #[command(
@@ -96,8 +92,6 @@ pub struct TuneArguments {
     out: PathBuf,
 }
 
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
 pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     let design = Design::load(&arguments.design)?;
     let system = &design.system;
@@ -139,8 +133,7 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     for change in renamed {
         eprintln!("note: in the result {change}");
     }
-    ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed))
-        .context("signals: cannot be handled")?;
+    listen()?;
     let movable = Movable::new(system, &selection);
     let search = Search {
         movable: &movable,
@@ -213,43 +206,6 @@ fn command(arguments: &TuneArguments) -> String {
         command += " --adapt";
     }
     command
-}
-
-/// What the user can mend is bad input.
-fn bad(error: SearchError) -> anyhow::Error {
-    match error {
-        SearchError::Observer(error) => error,
-        other => BadInput(other.to_string()).into(),
-    }
-}
-
-fn bar(evaluations: u64) -> ProgressBar {
-    let target = if std::io::stderr().is_terminal() {
-        ProgressDrawTarget::stderr()
-    } else {
-        ProgressDrawTarget::hidden()
-    };
-    let style = ProgressStyle::with_template("{bar:30} {pos} of at most {len}, {msg}, {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::with_draw_target(Some(evaluations), target).with_style(style)
-}
-
-fn show(bar: &ProgressBar, progress: &Progress<'_>) {
-    bar.set_position(progress.evaluations as u64);
-    bar.set_message(format!(
-        "best cost {:.4e}, step {:.1e}",
-        progress.best, progress.sigma
-    ));
-}
-
-/// Writes the state, whole or not at all.
-fn remember(file: &Path, question: &Question, progress: &Progress<'_>) -> anyhow::Result<()> {
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("{}: cannot be created", folder.display()))?;
-    }
-    let state = State::new(question.clone(), progress.judged);
-    put(file, state.text()?.as_bytes())
 }
 
 /// Variables and terms by their names.

@@ -1,8 +1,8 @@
 //! What a design should have answered: rows of a CSV file, a column a variable.
 
-use super::Hash;
 use crate::fuzzy::model::System;
 use crate::scenario::shown;
+use crate::search::Hash;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::fs::File;

@@ -1,37 +1,11 @@
-//! The search: CMA-ES asks, the objective answers, everything answered is kept.
+//! The search for a design: vectors are designs, what the library's checks refuse is not judged.
 
-use super::{Hash, Movable, Objective};
+use super::{Movable, Objective};
 use crate::fuzzy::lower::lower;
 use crate::fuzzy::model::System;
-use cmaes::objective_function::ParallelObjectiveFunction;
-use cmaes::{CMAESOptions, DVector, TerminationReason};
+use crate::search::{self, Problem, Progress, REFUSED, SearchError, Settings, Stop};
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// How to search.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// The seed of everything random.
-    pub seed: u64,
-    /// The first step, as a share of each variable's range.
-    pub sigma: f64,
-    /// Most candidates to judge.
-    pub evaluations: usize,
-}
-
-/// What is known after a generation.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress<'a> {
-    /// Candidates asked for.
-    pub evaluations: usize,
-    /// The least cost.
-    pub best: f64,
-    /// The step now, as a share of each variable's range.
-    pub sigma: f64,
-    /// Everything judged: costs by the fingerprints of their vectors.
-    pub judged: &'a BTreeMap<u64, f64>,
-}
+use std::sync::atomic::AtomicBool;
 
 /// A candidate and its cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,17 +14,6 @@ pub struct Best {
     pub cost: f64,
     /// The design that has it.
     pub system: System,
-}
-
-/// Why the search ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stop {
-    /// So many candidates were allowed.
-    Evaluations,
-    /// The optimiser sees nothing more to gain; why, in its words.
-    Converged(String),
-    /// It was told to.
-    Interrupted,
 }
 
 /// What came of a search.
@@ -70,23 +33,6 @@ pub struct Outcome {
     pub stop: Stop,
 }
 
-/// Why there was no search, or none to its end.
-#[derive(Debug, thiserror::Error)]
-pub enum SearchError {
-    /// Nothing moves.
-    #[error("no number can move: --only and --fix leave none")]
-    NothingMoves,
-    /// The design itself cannot be judged.
-    #[error("the design cannot be judged as it is: {0}")]
-    Start(String),
-    /// What is known already answers other questions.
-    #[error("the state answers other questions: it is from another version of this program")]
-    OtherState,
-    /// The observer could not go on.
-    #[error(transparent)]
-    Observer(#[from] anyhow::Error),
-}
-
 /// A search that is set up.
 pub struct Search<'a> {
     /// What moves.
@@ -101,66 +47,22 @@ pub struct Search<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// The cost of what the checks refuse or the objective cannot judge: worse than anything, and finite.
-const REFUSED: f64 = 1e12;
-/// Costs that differ by less do not differ.
-const TOLERANCE: f64 = 1e-9;
-
-/// What all threads write into.
-struct Record<'a> {
-    search: &'a Search<'a>,
-    judged: Mutex<BTreeMap<u64, f64>>,
-    best: Mutex<Option<(f64, u64, Vec<f64>)>>,
-    known: AtomicUsize,
-    refused: AtomicUsize,
-}
-
-/// Nothing is left half-done while these are locked, so a panic elsewhere does not spoil them.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Record<'_> {
-    fn judge(&self, vector: &[f64]) -> Option<f64> {
-        let (system, excess) = self.search.movable.decode(vector);
-        let lowered = lower(&system).ok()?;
-        let cost = self.search.objective.cost(&system, &lowered)?;
-        // What was meant lies beyond the walls: the farther, the worse, so that the search comes back.
-        Some(cost * (1.0 + excess)).filter(|cost| *cost < REFUSED)
+impl Problem for Search<'_> {
+    fn dimensions(&self) -> usize {
+        self.movable.len()
     }
-}
 
-impl ParallelObjectiveFunction for &Record<'_> {
-    /// NaN ends the search.
-    fn evaluate_parallel(&self, vector: &DVector<f64>) -> f64 {
-        let vector = vector.as_slice();
-        let key = Hash::of_vector(vector).bits();
-        let known = self.search.known.get(&key).copied();
-        let cost = match known {
-            Some(cost) => {
-                self.known.fetch_add(1, Ordering::Relaxed);
-                cost
-            }
-            None if self.search.stop.load(Ordering::Relaxed) => return f64::NAN,
-            None => self.judge(vector).unwrap_or(REFUSED),
-        };
-        if cost >= REFUSED {
-            self.refused.fetch_add(1, Ordering::Relaxed);
-        }
-        locked(&self.judged).insert(key, cost);
-        let mut best = locked(&self.best);
-        // Of equals the one with the lower fingerprint, so that the order in which threads end does not show.
-        if best.as_ref().is_none_or(|b| (cost, key) < (b.0, b.1)) {
-            *best = Some((cost, key, vector.to_vec()));
-        }
-        cost
+    fn cost(&self, vector: &[f64]) -> Option<f64> {
+        let (system, excess) = self.movable.decode(vector);
+        let lowered = lower(&system).ok()?;
+        let cost = self.objective.cost(&system, &lowered)?;
+        // What was meant lies beyond the walls: the farther, the worse, so that the search comes back.
+        Some(cost * (1.0 + excess))
     }
 }
 
 impl Search<'_> {
-    /// Searches, and shows what is known after every generation, and once more when it is interrupted.
-    ///
-    /// The same for the same settings and objective, whatever the number of threads, and whatever was known of it before.
+    /// Searches as [`search::Search::run`] does.
     ///
     /// # Errors
     ///
@@ -170,58 +72,20 @@ impl Search<'_> {
         observe: &mut dyn FnMut(Progress<'_>) -> anyhow::Result<()>,
     ) -> Result<Outcome, SearchError> {
         let start = self.start()?;
-        let record = Record {
-            search: self,
-            judged: Mutex::new(self.known.clone()),
-            best: Mutex::new(None),
-            known: AtomicUsize::new(0),
-            refused: AtomicUsize::new(0),
-        };
-        let dimensions = self.movable.len();
-        let mut optimiser = CMAESOptions::new(vec![0.0; dimensions], self.settings.sigma)
-            .seed(self.settings.seed)
-            .tol_fun(TOLERANCE)
-            .tol_fun_hist(TOLERANCE)
-            .build(&record)
-            .map_err(|_| SearchError::NothingMoves)?;
-        let each = optimiser.parameters().lambda();
-        let stop = loop {
-            if optimiser.function_evals() + each > self.settings.evaluations {
-                break Stop::Evaluations;
-            }
-            let before = record.known.load(Ordering::Relaxed);
-            let ended = optimiser.next_parallel();
-            let answered = record.known.load(Ordering::Relaxed) - before;
-            let first = optimiser.function_evals() <= each;
-            if first && answered < each.min(self.known.len()) {
-                return Err(SearchError::OtherState);
-            }
-            observe(Progress {
-                evaluations: optimiser.function_evals(),
-                best: locked(&record.best)
-                    .as_ref()
-                    .map_or(start, |b| b.0.min(start)),
-                sigma: optimiser.sigma(),
-                judged: &locked(&record.judged),
-            })?;
-            if let Some(ended) = ended {
-                break match ended.reasons.as_slice() {
-                    [TerminationReason::InvalidFunctionValue, ..] => Stop::Interrupted,
-                    reasons => {
-                        let words: Vec<String> = reasons.iter().map(|r| format!("{r:?}")).collect();
-                        Stop::Converged(words.join(", "))
-                    }
-                };
-            }
-        };
-        let found = locked(&record.best).take();
+        let found = search::Search {
+            problem: self,
+            settings: self.settings,
+            known: &self.known,
+            stop: self.stop,
+        }
+        .run(start, observe)?;
         Ok(Outcome {
-            best: self.better(start, found),
+            best: self.better(start, found.best),
             start,
-            evaluations: optimiser.function_evals(),
-            known: record.known.into_inner(),
-            refused: record.refused.into_inner(),
-            stop,
+            evaluations: found.evaluations,
+            known: found.known,
+            refused: found.refused,
+            stop: found.stop,
         })
     }
 
@@ -238,8 +102,8 @@ impl Search<'_> {
     }
 
     /// The candidate, judged as it is and not by what was meant, or the start.
-    fn better(&self, start: f64, found: Option<(f64, u64, Vec<f64>)>) -> Best {
-        let candidate = found.and_then(|(_, _, vector)| {
+    fn better(&self, start: f64, found: Option<Vec<f64>>) -> Best {
+        let candidate = found.and_then(|vector| {
             let (system, _) = self.movable.decode(&vector);
             let lowered = lower(&system).ok()?;
             let cost = self.objective.cost(&system, &lowered)?;

@@ -6,9 +6,10 @@ use host_sim::driving::{Driving, tables};
 use host_sim::fuzzy::lower::Lowered;
 use host_sim::fuzzy::model::System;
 use host_sim::fuzzy::tune::data::Data;
-use host_sim::fuzzy::tune::state::Question;
-use host_sim::fuzzy::tune::{Fit, Hash, Objective};
+use host_sim::fuzzy::tune::{Fit, Objective};
 use host_sim::scenario::Scenario;
+use host_sim::search::Hash;
+use host_sim::search::state::Question;
 
 /// A goal, read and checked.
 pub enum Goal {

@@ -10,7 +10,8 @@ use host_sim::fuzzy::describe::{number, number_to};
 use host_sim::fuzzy::lower::lower;
 use host_sim::fuzzy::model::System;
 use host_sim::fuzzy::tune::data::Data;
-use host_sim::fuzzy::tune::{Change, Fit, Movable, Objective, Outcome, Stop, changes};
+use host_sim::fuzzy::tune::{Change, Fit, Movable, Objective, Outcome, changes};
+use host_sim::search::Stop;
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 

@@ -1,0 +1,98 @@
+//! `host-sim tune`: what it refuses, what it writes, and that a search can be stopped and gone on with.
+
+use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use std::path::Path;
+use tempfile::tempdir;
+
+fn tune(arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("host-sim").unwrap();
+    command.arg("tune").args(arguments);
+    command
+}
+
+/// A search that takes seconds: one world, two settings.
+const SMALL: [&str; 8] = [
+    "--numbers",
+    "1",
+    "--task",
+    "goal",
+    "--only",
+    "steer.rate,barrier.share",
+    "--sigma",
+    "0.3",
+];
+
+#[test]
+fn worlds_of_the_test_set_are_refused() {
+    tune(&["--numbers", "1,12"])
+        .assert()
+        .code(2)
+        .stderr(contains("world 12").and(contains("not divisible by 6")));
+}
+
+#[test]
+fn settings_that_do_not_exist_are_named() {
+    tune(&["--only", "steer.raet"])
+        .assert()
+        .code(2)
+        .stderr(contains("--only steer.raet").and(contains("steer.rate")));
+    tune(&["--list", "--only", "steer"])
+        .assert()
+        .success()
+        .stdout(contains("steer.flank").and(contains("memory").not()));
+}
+
+#[test]
+fn a_search_that_goes_on_ends_where_a_whole_one_does() {
+    let folder = tempdir().unwrap();
+    let [whole, half, rest] = ["whole", "half", "rest"].map(|name| folder.path().join(name));
+    let run = |out: &Path, more: &[&str]| {
+        let mut arguments = SMALL.to_vec();
+        arguments.extend(["--out", out.to_str().unwrap()]);
+        arguments.extend(more);
+        tune(&arguments).assert().success();
+    };
+    run(&whole, &["--evaluations", "18"]);
+    run(&half, &["--evaluations", "6"]);
+    let state = half.join("state.json");
+    run(
+        &rest,
+        &["--evaluations", "18", "--resume", state.to_str().unwrap()],
+    );
+    let read = |folder: &Path, file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
+    assert_eq!(read(&whole, "tuned.rs"), read(&rest, "tuned.rs"));
+    assert_eq!(read(&whole, "state.json"), read(&rest, "state.json"));
+    // Another seed asks other questions.
+    let mut arguments = SMALL.to_vec();
+    arguments.extend(["--seed", "2", "--resume", state.to_str().unwrap()]);
+    tune(&arguments).assert().code(2).stderr(contains("--seed"));
+}
+
+/// What is shipped is what the command writes: read and written again it is the same.
+#[test]
+fn the_shipped_sets_are_its_output() {
+    let folder = tempdir().unwrap();
+    for (sensors, module) in [
+        ("cone16", "sixteen"),
+        ("cone8", "eight"),
+        ("ultrasonic5", "five"),
+        ("lidar720", "lidar"),
+    ] {
+        let out = folder.path().join(module);
+        tune(&["--sensors", sensors, "--numbers", "1", "--task", "path"])
+            .args(["--evaluations", "1", "--out", out.to_str().unwrap()])
+            .assert()
+            .success();
+        let text = |file: &Path| {
+            let text = std::fs::read_to_string(file).unwrap();
+            // The first lines hold the command.
+            let (_, body) = text.split_once("\n\n").unwrap();
+            body.to_owned()
+        };
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join(format!("../src/navigate/presets/{module}.rs"));
+        assert_eq!(text(&out.join("tuned.rs")), text(&shipped), "{module}");
+    }
+}
