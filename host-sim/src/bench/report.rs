@@ -252,8 +252,8 @@ const COLUMNS: [(&str, &str, Cell); 12] = [
 const HEAD: &str = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Navigation bench</title><style>
 body{font:15px/1.45 Ubuntu,Helvetica,Arial,sans-serif;color:#22262b;margin:2em}main{max-width:80em;margin:auto}
 .wide{overflow-x:auto}table{border-collapse:collapse;margin:1em 0}td,th{padding:.3em .8em;border-bottom:1px solid #e3e6e9;text-align:right;vertical-align:top}
-th{font-weight:600;color:#5f666e;vertical-align:bottom}td:first-child,th:first-child{text-align:left}td small{display:block;color:#5f666e}
-.runs{display:flex;flex-wrap:wrap;gap:1em;align-items:flex-end}.runs a{color:#22262b;text-decoration:none;font-size:13px;width:min-content;min-width:9em}
+th{font-weight:600;color:#5f666e;vertical-align:bottom}td:first-child,th:first-child{text-align:left}td small{display:block;color:#5f666e;white-space:nowrap}
+.runs{display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start}.runs a{color:#22262b;text-decoration:none;font-size:13px;width:min-content;min-width:9em}
 .runs svg{display:block;border:1px solid #e3e6e9;margin-bottom:.3em}.runs a:hover svg{border-color:#22262b}
 .legend i{display:inline-block;width:22px;height:3px;margin:0 .4em .25em 1.2em}.legend i:first-child{margin-left:0}
 .legend i.route{height:0;background:none;border-top:2px dashed #9aa0a6}

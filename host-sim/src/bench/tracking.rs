@@ -64,12 +64,12 @@ impl<'a> Tracking<'a> {
             sum.ticks += 1;
             sum.most = sum.most.max(error);
         }
-        if self.course.passed.is_some_and(|passed| step.way >= passed) {
+        if let Some(passed) = self.course.passed.filter(|passed| step.way >= *passed) {
             self.away = Some(match self.away {
                 _ if error > REGAINED => (step.way, true),
                 Some((way, true)) => (way.max(step.way), false),
                 Some(near) => near,
-                None => (step.way, false),
+                None => (passed, false),
             });
         }
     }

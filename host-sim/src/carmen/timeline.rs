@@ -7,8 +7,8 @@ use serde::Serialize;
 /// Turning speed that goes with a pace, rad/s.
 const TURNING: f64 = 1.0;
 
-/// Longest recording, s: a day.
-pub const LONGEST: f64 = 86_400.0;
+/// Longest recording, s: six hours.
+pub const LONGEST: f64 = 21_600.0;
 
 /// Where the times come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -139,8 +139,7 @@ fn own_times(events: &[Event], which: usize) -> Option<Vec<f64>> {
     let most = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let scans = kind(true);
     let grows = scans.len() < 2 || scans[0] < scans[scans.len() - 1];
-    (grows && most > least && most - least <= LONGEST && forward(&scans) && forward(&kind(false)))
-        .then_some(times)
+    (grows && most > least && forward(&scans) && forward(&kind(false))).then_some(times)
 }
 
 /// Times of a robot that goes from pose to pose at `pace` m/s, or turns at 1 rad/s where that takes longer.

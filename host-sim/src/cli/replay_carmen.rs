@@ -48,10 +48,13 @@ pub fn execute(arguments: &CarmenArguments) -> anyhow::Result<()> {
     let timeline = Timeline::new(&log, arguments.pace);
     if timeline.duration() > LONGEST {
         return Err(BadInput(format!(
-            "{}: found {:.0} s at {} m/s; allowed: up to {LONGEST} s, cut the log or raise --pace",
+            "{}: found {:.0} s; allowed: up to {LONGEST} s, cut the log{}",
             file.display(),
             timeline.duration(),
-            arguments.pace
+            match timeline.clock {
+                Clock::Pace => " or raise --pace",
+                _ => "",
+            }
         ))
         .into());
     }
