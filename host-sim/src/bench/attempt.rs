@@ -212,6 +212,7 @@ pub fn drive(
     observe: &mut dyn FnMut(&Step<'_>),
 ) -> Outcome {
     let mission = setting.mission(arena);
+    let ways = ways(&mission.route);
     let mut noise = stream(seed, arena.number, Purpose::Ranges);
     let mut errors = stream(seed, arena.number, Purpose::Odometry);
     let mut odometry = Odometry::new(setting.drift, arena.start, &mut errors);
@@ -245,7 +246,7 @@ pub fn drive(
             twist: odometry.twist,
             ranges: &ranging.readings,
         }));
-        let (cross_track, way) = beside(&mission.route, vehicle.pose);
+        let (cross_track, way) = beside(&mission.route, &ways, vehicle.pose);
         observe(&Step {
             time,
             pose: vehicle.pose,
@@ -331,12 +332,21 @@ pub fn body_clearance(body: &Body, pose: [f64; 3], circles: &[Circle]) -> f64 {
     })
 }
 
+/// How far along a polyline its points are, m.
+fn ways(route: &[[f64; 2]]) -> Vec<f64> {
+    let mut way = 0.0;
+    let steps = route.windows(2).map(|w| {
+        way += libm::hypot(w[1][0] - w[0][0], w[1][1] - w[0][1]);
+        way
+    });
+    std::iter::once(0.0).chain(steps).collect()
+}
+
 /// Signed distance from a polyline, left of it positive, and how far along it the nearest place is, m; zero if it has no
-/// length.
-fn beside(route: &[[f64; 2]], [x, y, _]: [f64; 3]) -> (f64, f64) {
+/// length. `ways` are its points' own.
+fn beside(route: &[[f64; 2]], ways: &[f64], [x, y, _]: [f64; 3]) -> (f64, f64) {
     let mut best = (f64::INFINITY, 0.0, 0.0);
-    let mut before = 0.0;
-    for w in route.windows(2) {
+    for (w, way) in route.windows(2).zip(ways.windows(2)) {
         let (ex, ey) = (w[1][0] - w[0][0], w[1][1] - w[0][1]);
         let (px, py) = (x - w[0][0], y - w[0][1]);
         let length2 = ex * ex + ey * ey;
@@ -346,11 +356,10 @@ fn beside(route: &[[f64; 2]], [x, y, _]: [f64; 3]) -> (f64, f64) {
         let share = ((px * ex + py * ey) / length2).clamp(0.0, 1.0);
         let (qx, qy) = (px - share * ex, py - share * ey);
         let squared = qx * qx + qy * qy;
-        let length = length2.sqrt();
         if squared < best.0 {
-            best = (squared, ex * py - ey * px, before + share * length);
+            let along = way[0] + share * (way[1] - way[0]);
+            best = (squared, ex * py - ey * px, along);
         }
-        before += length;
     }
     if best.0.is_finite() {
         (best.0.sqrt().copysign(best.1), best.2)
