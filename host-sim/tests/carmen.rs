@@ -186,6 +186,23 @@ fn without_times_it_goes_at_a_pace() {
 }
 
 #[test]
+fn given_its_own_way_it_follows_that() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("hall.log"), corridor(6.0, true)).unwrap();
+    let follows = |task: &str| {
+        sim(dir.path())
+            .args(["hall.log", "--out", "o", "--task", task])
+            .assert()
+            .success();
+        let figures = summary(&dir.path().join("o"));
+        figures["manoeuvres"]["follow"].as_f64().unwrap()
+    };
+    assert_eq!(follows("goal"), 0.0);
+    let path = follows("path");
+    assert!(path > 0.5, "{path}");
+}
+
+#[test]
 fn another_body_has_another_clearance() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("hall.log"), corridor(3.0, true)).unwrap();

@@ -1,7 +1,7 @@
 //! The navigator on a recorded robot, open loop.
 //!
 //! Every 50 ms it gets the recorded pose, and the scan where one came in that time; between scans its sensors are silent and
-//! its memory goes on. Its goal is a place on the recorded robot's own way ahead: as far as is asked for, and a new one when
+//! its memory goes on. Its goal, or the end of its path, is a place on the recorded robot's own way ahead: as far as is asked for, and a new one when
 //! half of that is left. What it decides is noted and nobody follows; so what it takes for its own last command is not what
 //! the robot did.
 
@@ -10,6 +10,7 @@ use super::timeline::Timeline;
 use crate::bench::body::BodyFrame;
 use crate::si;
 use fuzzypilot::geometry::{Point, Pose};
+use fuzzypilot::guide::StoredPath;
 use fuzzypilot::navigate::{
     Footprint, Manoeuvre, NavigationRecord, Navigator, NavigatorParams, RangeSet, Setup, Task,
     Vector, presets,
@@ -28,9 +29,20 @@ pub const PERIOD: f64 = 0.05;
 /// Longest range that the navigator takes, m.
 const REACH: f64 = 7.9;
 
+/// What the navigator is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Given {
+    /// A place to reach.
+    Goal,
+    /// The recorded robot's own way there, as a path to follow.
+    Path,
+}
+
 /// How to replay.
 #[derive(Clone, Debug)]
 pub struct Settings {
+    /// What the navigator is given.
+    pub given: Given,
     /// The robot's outline.
     pub footprint: Footprint,
     /// Speed cap, m/s.
@@ -83,6 +95,7 @@ pub fn replay(
     let local = |[x, y]: [f64; 2]| Point::new(si::metres(x - x0), si::metres(y - y0));
     let mut goal_way = f64::NEG_INFINITY;
     let mut goal = [x0, y0];
+    let mut path = None;
     let mut decisions = Vec::new();
     let mut remembered = Remembered::default();
     let mut moments = timeline.moments.iter().peekable();
@@ -102,6 +115,10 @@ pub fn replay(
             goal_way = (way + settings.look).min(timeline.length());
             let [x, y, _] = timeline.at_way(goal_way);
             goal = [x, y];
+            path = match settings.given {
+                Given::Goal => None,
+                Given::Path => stretch(timeline, way, goal_way, &local),
+            };
             navigator.restart();
         }
 
@@ -114,7 +131,11 @@ pub fn replay(
             .map(|end| si::from_metres(outline.clearance(Vector::of(end)).metres()))
             .fold(f64::INFINITY, f64::min);
         let at = Pose::new(local([pose[0], pose[1]]), si::angle(pose[2]));
-        let record = navigator.step(&setup, at, Task::Goal(local(goal)));
+        let path = path.as_ref().and_then(|path| path.path());
+        let task = path
+            .as_ref()
+            .map_or(Task::Goal(local(goal)), |path| Task::Path(path));
+        let record = navigator.step(&setup, at, task);
         if scan.is_some() {
             let frame = BodyFrame::new(pose);
             for point in navigator.memory().points() {
@@ -136,6 +157,37 @@ pub fn replay(
         decisions,
         remembered: remembered.places,
     })
+}
+
+/// Most points of a stretch, and their distance where that is enough, m.
+const POINTS: usize = 256;
+const SPACING: f64 = 0.15;
+
+/// The recorded way between two places of it as a path; none if that is too short to have a direction.
+fn stretch(
+    timeline: &Timeline<'_>,
+    from: f64,
+    to: f64,
+    local: &dyn Fn([f64; 2]) -> Point,
+) -> Option<Box<StoredPath<1, POINTS>>> {
+    let count = (((to - from) / SPACING).floor() as usize).min(POINTS - 1);
+    if count < 2 {
+        return None;
+    }
+    let place = |k: usize| {
+        let [x, y, _] = timeline.at_way(from + (to - from) * k as f64 / count as f64);
+        [x, y]
+    };
+    let mut path = Box::new(StoredPath::new());
+    path.begin_points(false);
+    for k in 0..=count {
+        let (behind, ahead) = (place(k.saturating_sub(1)), place((k + 1).min(count)));
+        let heading = libm::atan2(ahead[1] - behind[1], ahead[0] - behind[0]);
+        path.push_point(Pose::new(local(place(k)), si::angle(heading)))
+            .ok()?;
+    }
+    path.commit(false).ok()?;
+    Some(path)
 }
 
 /// Directions from the robot's front and ranges of a scan's beams; zero where nothing came back or nothing is within reach.

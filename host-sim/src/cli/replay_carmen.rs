@@ -2,7 +2,7 @@
 
 use super::{BadInput, check_folder, number, print, put};
 use anyhow::Context;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
 use host_sim::bench::body::Body;
 use host_sim::carmen::summary::{Summary, csv};
@@ -19,6 +19,9 @@ pub struct CarmenArguments {
     /// Folder for the results; out/NAME when left out.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// What the navigator is given: a place on the robot's own way ahead, or that way as a path to follow.
+    #[arg(long, value_enum, default_value_t = Task::Goal)]
+    task: Task,
     /// How far ahead on the robot's own way the goal lies, m; a new one when half of it is left.
     #[arg(long, default_value_t = 3.0, value_parser = number(0.5, 100.0), allow_hyphen_values = true)]
     look: f64,
@@ -31,6 +34,15 @@ pub struct CarmenArguments {
     /// Speed that the recorded robot is taken to have driven with if the log has no usable times, m/s.
     #[arg(long, default_value_t = 0.5, value_parser = number(0.05, 5.0), allow_hyphen_values = true)]
     pace: f64,
+}
+
+/// What the navigator is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Task {
+    /// A place.
+    Goal,
+    /// The way there.
+    Path,
 }
 
 pub fn execute(arguments: &CarmenArguments) -> anyhow::Result<()> {
@@ -62,6 +74,10 @@ pub fn execute(arguments: &CarmenArguments) -> anyhow::Result<()> {
         .footprint()
         .context("a body that was read has few vertices")?;
     let settings = replay::Settings {
+        given: match arguments.task {
+            Task::Goal => replay::Given::Goal,
+            Task::Path => replay::Given::Path,
+        },
         footprint,
         speed: arguments.speed,
         look: arguments.look,
