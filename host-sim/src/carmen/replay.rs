@@ -132,9 +132,7 @@ pub fn replay(
             .fold(f64::INFINITY, f64::min);
         let at = Pose::new(local([pose[0], pose[1]]), si::angle(pose[2]));
         let path = path.as_ref().and_then(|path| path.path());
-        let task = path
-            .as_ref()
-            .map_or(Task::Goal(local(goal)), |path| Task::Path(path));
+        let task = path.as_ref().map_or(Task::Goal(local(goal)), Task::Path);
         let record = navigator.step(&setup, at, task);
         if scan.is_some() {
             let frame = BodyFrame::new(pose);

@@ -135,7 +135,13 @@ fn report(summary: &Summary) -> Table {
         "mean speed decided",
         format!("{:.2} m/s", summary.mean_speed_mps),
     );
-    let metres = |x: Option<f64>| x.map_or_else(|| "none".to_owned(), |x| format!("{x:.3} m"));
+    let metres = |x: Option<f64>| {
+        x.map_or_else(
+            || "none".to_owned(),
+            // No minus before a zero.
+            |x| format!("{:.3} m", (1000.0 * x).round() / 1000.0 + 0.0),
+        )
+    };
     let when = summary
         .least_clearance_at_s
         .map_or_else(String::new, |t| format!(" at {t:.2} s"));
