@@ -2,7 +2,7 @@
 //!
 //! A [`scenario`] says what is driven where; [`run`] closes the loop of [`plant`], [`sensors`] and the library's own
 //! `Robot::tick`, or of a robot's behind a link ([`hil`]); [`metrics`], [`recorder`] and [`ticks`] watch it; [`plot`] and [`replay`] show it.
-//! [`fuzzy`] is for fuzzy systems without a robot; [`driving`] lets one of them drive it. [`bench`] drives navigators through
+//! [`fuzzy`] is for fuzzy systems without a robot; [`driving`] lets one of them drive it. [`mod@bench`] drives navigators through
 //! clutter; [`carmen`] feeds them what a real robot recorded.
 
 pub mod bench;

@@ -108,7 +108,7 @@ pub fn clearance(decision: &Decision) -> f64 {
     }
 }
 
-/// The header of [`csv`].
+/// The header of [`csv()`].
 pub const COLUMNS: [&str; 18] = [
     "tick",
     "t_s",
