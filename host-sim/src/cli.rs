@@ -8,6 +8,7 @@ mod fuzzy;
 mod hil;
 mod list;
 mod merge;
+mod replay_carmen;
 mod run;
 mod search;
 mod surface;
@@ -17,6 +18,7 @@ mod tune;
 use anyhow::Context;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use host_sim::bench::worlds::error::WorldError;
+use host_sim::carmen::log::LogError;
 use host_sim::control::{
     AxisName, CoarseName, FineNn, InputName, IntegratorName, LawName, TablesName,
 };
@@ -71,6 +73,8 @@ enum Command {
     Tune(Box<tune::TuneArguments>),
     /// Put the parts of a bench that was run with `--shard` together.
     Merge(merge::MergeArguments),
+    /// Feed a real robot's CARMEN log to the navigator, open loop, and draw what it would have done.
+    ReplayCarmen(replay_carmen::CarmenArguments),
 }
 
 /// Carries out a command line.
@@ -89,6 +93,7 @@ pub fn execute(arguments: Arguments) -> anyhow::Result<()> {
         Some(Command::BenchTick(arguments)) => bench_tick::execute(&arguments),
         Some(Command::Bench(arguments)) => bench::execute(&arguments),
         Some(Command::Merge(arguments)) => merge::execute(&arguments),
+        Some(Command::ReplayCarmen(arguments)) => replay_carmen::execute(&arguments),
     }
 }
 
@@ -113,7 +118,8 @@ pub fn exit_code(error: &anyhow::Error) -> u8 {
             || error.is::<ReadError>()
             || error.is::<ScenarioError>()
             || error.is::<RunError>()
-            || error.is::<WorldError>() =>
+            || error.is::<WorldError>()
+            || error.is::<LogError>() =>
         {
             2
         }

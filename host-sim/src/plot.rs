@@ -10,6 +10,7 @@ pub mod membership;
 pub mod raster;
 pub mod run;
 pub mod surface;
+pub mod thumbnail;
 
 use std::ops::Range;
 use std::path::Path;
@@ -27,6 +28,7 @@ pub use membership::{Form, TermCurve, Variable, membership_svg};
 pub use raster::png;
 pub use run::run_svg;
 pub use surface::{SurfaceSpec, surface_svg};
+pub use thumbnail::thumbnail_svg;
 
 /// Drawing units a pixel of the figure.
 const FINE: f64 = 8.0;

@@ -20,6 +20,7 @@ pub fn start(scenario: &Scenario, seed: u64) -> Recording {
         seed,
         period: scenario.robot.period,
         robot_radius: scenario.robot.radius,
+        outline: Vec::new(),
         obstacles: scenario.world.discs.clone(),
         path: scenario.path.track().polylines(),
         beams: beams(&scenario.sensors),

@@ -73,11 +73,11 @@ pub struct Frame {
     pub truth: [f64; 3],
     /// Pose as the robot believes it.
     pub believed: [f64; 3],
-    /// `follow`, `avoid` or `stop`.
+    /// `follow`, `avoid` or `stop`; of a navigator also `escape`, `blocked` or `arrived`.
     pub mode: &'static str,
     /// Why, in a word or two (`path end`, `side left`, …); may be empty.
     pub note: &'static str,
-    /// Signed cross-track error of the true pose against the path, metres, left positive.
+    /// Signed cross-track error of the true pose against the path, metres, left positive; NaN where there is none.
     pub cross_track: f64,
     /// Distance from the robot's rim to the nearest obstacle, metres; infinite in an empty world.
     pub clearance: f64,
@@ -108,6 +108,8 @@ pub struct Recording {
     pub period: f64,
     /// Robot's radius, metres.
     pub robot_radius: f64,
+    /// Corners of the robot's outline in its own frame, metres, counter-clockwise; none if it is a disc.
+    pub outline: Vec<[f64; 2]>,
     /// Obstacles.
     pub obstacles: Vec<Disc>,
     /// Path as polylines, x, y in metres, dense enough to draw (one polyline a stretch without gaps).

@@ -52,6 +52,7 @@ struct Page<'a> {
     seed: String,
     period: f64,
     robot_radius: f64,
+    outline: &'a [[f64; 2]],
     obstacles: Vec<(&'a str, f64, f64, f64)>,
     path: Vec<[Column; 2]>,
     beams: Vec<[f64; 5]>,
@@ -134,6 +135,7 @@ impl<'a> Page<'a> {
             seed: rec.seed.to_string(),
             period: rec.period,
             robot_radius: rec.robot_radius,
+            outline: &rec.outline,
             obstacles: rec
                 .obstacles
                 .iter()
@@ -350,6 +352,7 @@ mod tests {
             seed: u64::MAX,
             period: 0.05,
             robot_radius: 0.25,
+            outline: Vec::new(),
             obstacles: Vec::new(),
             path: Vec::new(),
             beams: Vec::new(),

@@ -142,7 +142,8 @@ impl OwnedPath {
     }
 }
 
-fn segment(piece: &Piece) -> Segment {
+/// A piece as the library has it.
+pub(crate) fn segment(piece: &Piece) -> Segment {
     match *piece {
         Piece::Line { from, to } => {
             let heading = libm::atan2(to[1] - from[1], to[0] - from[0]);

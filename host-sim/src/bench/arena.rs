@@ -1,5 +1,8 @@
 //! A world to get through: discs, some of them moving, a start, a goal, and what is known of the way.
 
+use crate::track::Piece;
+use std::ops::Range;
+
 /// A circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
@@ -40,6 +43,28 @@ impl Mover {
     }
 }
 
+/// A route of a known shape, on which the distance from it says something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// Name, such as `arc-r2`.
+    pub name: String,
+    /// Lines and arcs, one after the other.
+    pub pieces: Vec<Piece>,
+    /// Parts that are looked at by themselves.
+    pub stretches: Vec<Stretch>,
+    /// Where the far edge of an obstacle on it is, m along the route.
+    pub passed: Option<f64>,
+}
+
+/// A part of a route.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// Name, such as `approach`.
+    pub name: String,
+    /// m along the route.
+    pub along: Range<f64>,
+}
+
 /// A world to get through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arena {
@@ -59,6 +84,8 @@ pub struct Arena {
     pub sealed: bool,
     /// The planner's path from start to goal, both included, m.
     pub route: Vec<[f64; 2]>,
+    /// What the route is, if it is more than a planner's path; then `route` is the same as points.
+    pub course: Option<Course>,
 }
 
 impl Arena {

@@ -1,7 +1,7 @@
 //! One run: a navigator, a world, a seed.
 
 use super::arena::{Arena, Circle};
-use super::body::{BodyFrame, JACKAL, Rectangle};
+use super::body::{Body, BodyFrame, JACKAL};
 use super::discs::Discs;
 use super::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use super::odometry::{Drift, Odometry};
@@ -24,6 +24,9 @@ const LATENCY: usize = 1;
 
 /// How far a robot must get from where it was to have made progress, m.
 const PROGRESS: f64 = 0.4;
+
+/// Who is near one place for longer, and does not say so, stalls, s.
+pub const STALL: f64 = 5.0;
 
 /// How long a navigator must report that it is blocked, or at the goal where it is not, for the run to end, s.
 const PATIENCE: f64 = 10.0;
@@ -51,11 +54,22 @@ pub enum Dead {
     BySeed,
 }
 
+impl Dead {
+    /// The dead one of `count` in a seed's run.
+    pub fn sensor(self, seed: u64, count: usize) -> Option<usize> {
+        match self {
+            Self::None => None,
+            Self::One(sensor) => Some(sensor),
+            Self::BySeed => Some((seed % count.max(1) as u64) as usize),
+        }
+    }
+}
+
 /// All that is the same for every run of a campaign.
 #[derive(Clone, Debug)]
 pub struct Setting {
     /// The body.
-    pub body: Rectangle,
+    pub body: Body,
     /// What it can do.
     pub limits: Limits,
     /// Its sensors.
@@ -90,6 +104,16 @@ impl Setting {
         }
     }
 
+    /// The same robot with nothing wrong: mild noise, all sensors alive, exact odometry.
+    pub fn sound(&self) -> Self {
+        Self {
+            disturbance: Disturbance::MILD,
+            dead: Dead::None,
+            drift: Drift::default(),
+            ..self.clone()
+        }
+    }
+
     /// What a navigator is told in a world.
     pub fn mission(&self, arena: &Arena) -> Mission {
         let [x, y, _] = arena.start;
@@ -97,13 +121,17 @@ impl Setting {
             start: arena.start,
             goal: arena.goal,
             goal_radius: arena.goal_radius,
+            pieces: match &arena.course {
+                Some(course) if self.planned => course.pieces.clone(),
+                _ => Vec::new(),
+            },
             route: if self.planned {
                 arena.route.clone()
             } else {
                 vec![[x, y], arena.goal]
             },
             planned: self.planned,
-            body: self.body,
+            body: self.body.clone(),
             limits: self.limits,
             sensors: self.sensors.clone(),
             period: PERIOD,
@@ -139,10 +167,16 @@ pub struct Outcome {
     pub min_clearance_m: f64,
     /// RMS distance of the body's centre from the given route, the straight line included, m.
     pub cross_track_rms_m: f64,
+    /// Largest of these distances, m.
+    #[serde(default)]
+    pub cross_track_max_m: f64,
     /// RMS change of the commanded yaw rate, rad/s².
     pub omega_rate_rms: f64,
     /// Longest time within 0.4 m of one place without reporting that it is blocked or there, s.
     pub longest_stall_s: f64,
+    /// How often that was longer than 5 s.
+    #[serde(default)]
+    pub stalls: u32,
 }
 
 /// What an observer sees of a tick, before the command acts.
@@ -164,6 +198,8 @@ pub struct Step<'a> {
     pub clearance: f64,
     /// Signed distance of the body's centre from the route, left positive, m.
     pub cross_track: f64,
+    /// Place of the route that is nearest to the body's centre, m along it.
+    pub way: f64,
 }
 
 /// Drives a navigator through a world. `discs` are the world's circles, binned once for all its runs.
@@ -176,14 +212,11 @@ pub fn drive(
     observe: &mut dyn FnMut(&Step<'_>),
 ) -> Outcome {
     let mission = setting.mission(arena);
+    let ways = ways(&mission.route);
     let mut noise = stream(seed, arena.number, Purpose::Ranges);
     let mut errors = stream(seed, arena.number, Purpose::Odometry);
     let mut odometry = Odometry::new(setting.drift, arena.start, &mut errors);
-    let dead = match setting.dead {
-        Dead::None => None,
-        Dead::One(sensor) => Some(sensor),
-        Dead::BySeed => Some((seed % setting.sensors.len() as u64) as usize),
-    };
+    let dead = setting.dead.sensor(seed, setting.sensors.len());
     let mut ranging = Ranging::new(&setting.sensors, setting.disturbance, dead);
     let mut vehicle = Vehicle::new(setting.limits, arena.start, LATENCY);
     let mut watch = Watch::new(arena.start);
@@ -213,7 +246,7 @@ pub fn drive(
             twist: odometry.twist,
             ranges: &ranging.readings,
         }));
-        let cross_track = beside(&mission.route, vehicle.pose);
+        let (cross_track, way) = beside(&mission.route, &ways, vehicle.pose);
         observe(&Step {
             time,
             pose: vehicle.pose,
@@ -223,6 +256,7 @@ pub fn drive(
             command,
             clearance,
             cross_track,
+            way,
         });
         watch.see(time, vehicle.pose, cross_track, command);
         if watch.given_up(time) {
@@ -284,7 +318,7 @@ fn move_along(arena: &Arena, time: f64, circles: &mut [Circle]) {
 }
 
 /// Distance of a body from the nearest circle, at most 1 m; at or below zero is contact.
-pub fn body_clearance(body: &Rectangle, pose: [f64; 3], circles: &[Circle]) -> f64 {
+pub fn body_clearance(body: &Body, pose: [f64; 3], circles: &[Circle]) -> f64 {
     let frame = BodyFrame::new(pose);
     circles.iter().fold(CLEARANCE_REACH, |least, c| {
         let p = frame.see(c.at);
@@ -298,10 +332,21 @@ pub fn body_clearance(body: &Rectangle, pose: [f64; 3], circles: &[Circle]) -> f
     })
 }
 
-/// Signed distance from a polyline, left of it positive, m; zero if it has no length.
-fn beside(route: &[[f64; 2]], [x, y, _]: [f64; 3]) -> f64 {
-    let mut best = (f64::INFINITY, 0.0);
-    for w in route.windows(2) {
+/// How far along a polyline its points are, m.
+fn ways(route: &[[f64; 2]]) -> Vec<f64> {
+    let mut way = 0.0;
+    let steps = route.windows(2).map(|w| {
+        way += libm::hypot(w[1][0] - w[0][0], w[1][1] - w[0][1]);
+        way
+    });
+    std::iter::once(0.0).chain(steps).collect()
+}
+
+/// Signed distance from a polyline, left of it positive, and how far along it the nearest place is, m; zero if it has no
+/// length. `ways` are its points' own.
+fn beside(route: &[[f64; 2]], ways: &[f64], [x, y, _]: [f64; 3]) -> (f64, f64) {
+    let mut best = (f64::INFINITY, 0.0, 0.0);
+    for (w, way) in route.windows(2).zip(ways.windows(2)) {
         let (ex, ey) = (w[1][0] - w[0][0], w[1][1] - w[0][1]);
         let (px, py) = (x - w[0][0], y - w[0][1]);
         let length2 = ex * ex + ey * ey;
@@ -312,13 +357,14 @@ fn beside(route: &[[f64; 2]], [x, y, _]: [f64; 3]) -> f64 {
         let (qx, qy) = (px - share * ex, py - share * ey);
         let squared = qx * qx + qy * qy;
         if squared < best.0 {
-            best = (squared, ex * py - ey * px);
+            let along = way[0] + share * (way[1] - way[0]);
+            best = (squared, ex * py - ey * px, along);
         }
     }
     if best.0.is_finite() {
-        best.0.sqrt().copysign(best.1)
+        (best.0.sqrt().copysign(best.1), best.2)
     } else {
-        0.0
+        (0.0, 0.0)
     }
 }
 
@@ -326,12 +372,16 @@ fn beside(route: &[[f64; 2]], [x, y, _]: [f64; 3]) -> f64 {
 struct Watch {
     min_clearance: f64,
     cross_track: f64,
+    most_cross_track: f64,
     omega_rate: f64,
     ticks: u64,
     last_omega: f64,
     anchor: [f64; 2],
     anchored: f64,
     longest_stall: f64,
+    stalls: u32,
+    /// Whether the time at the anchor counts as a stall already.
+    stalled: bool,
     /// Since when it says so, if it says that it is blocked or there.
     standing: Option<(Mode, f64)>,
 }
@@ -341,18 +391,22 @@ impl Watch {
         Self {
             min_clearance: CLEARANCE_REACH,
             cross_track: 0.0,
+            most_cross_track: 0.0,
             omega_rate: 0.0,
             ticks: 0,
             last_omega: 0.0,
             anchor: [x, y],
             anchored: 0.0,
             longest_stall: 0.0,
+            stalls: 0,
+            stalled: false,
             standing: None,
         }
     }
 
     fn see(&mut self, time: f64, [x, y, _]: [f64; 3], cross_track: f64, command: Command) {
         self.cross_track += cross_track * cross_track;
+        self.most_cross_track = self.most_cross_track.max(cross_track.abs());
         let change = (command.yaw_rate - self.last_omega) * RATE;
         self.omega_rate += change * change;
         self.last_omega = command.yaw_rate;
@@ -362,8 +416,14 @@ impl Watch {
         let moved = libm::hypot(x - self.anchor[0], y - self.anchor[1]) >= PROGRESS;
         if excused || moved {
             (self.anchor, self.anchored) = ([x, y], time);
+            self.stalled = false;
         }
-        self.longest_stall = self.longest_stall.max(time - self.anchored);
+        let stood = time - self.anchored;
+        self.longest_stall = self.longest_stall.max(stood);
+        if stood > STALL + PERIOD / 2.0 && !self.stalled {
+            self.stalled = true;
+            self.stalls += 1;
+        }
         self.standing = match self.standing {
             Some((mode, since)) if mode == command.mode => Some((mode, since)),
             _ if excused => Some((command.mode, time)),
@@ -384,8 +444,10 @@ impl Watch {
             score,
             min_clearance_m: self.min_clearance,
             cross_track_rms_m: rms(self.cross_track),
+            cross_track_max_m: self.most_cross_track,
             omega_rate_rms: rms(self.omega_rate),
             longest_stall_s: self.longest_stall,
+            stalls: self.stalls,
         }
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod bendy;
 pub mod certainty;
+pub mod destination;
 pub mod dwa;
 pub mod echoes;
 pub mod pure_pursuit;

@@ -5,6 +5,7 @@ use super::attempt::{Outcome, Setting, drive};
 use super::controllers::Controller;
 use super::discs::Discs;
 use super::navigator::{Mission, Navigator};
+use super::tracking::{Tracked, Tracking};
 use rayon::prelude::*;
 
 /// Worlds, seeds and all that is the same for their runs.
@@ -19,14 +20,18 @@ pub struct Campaign {
 }
 
 /// One run and what came out of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// World's number.
     pub world: u32,
     /// Seed.
     pub seed: u64,
+    /// The sensor that was dead in it, if one was.
+    pub dead: Option<usize>,
     /// Result.
     pub outcome: Outcome,
+    /// The route's name, and how far from it the run was, where its shape is known.
+    pub course: Option<(String, Vec<Tracked>)>,
 }
 
 impl Campaign {
@@ -54,19 +59,28 @@ impl Campaign {
                 let (world, seed) = (job / seeds, self.seeds[job % seeds]);
                 let arena = &self.arenas[world];
                 let mut navigator = build(&self.setting.mission(arena));
+                let mut tracking = arena.course.as_ref().map(Tracking::new);
                 let outcome = drive(
                     arena,
                     &discs[world],
                     &self.setting,
                     seed,
                     navigator.as_mut(),
-                    &mut |_| {},
+                    &mut |step| {
+                        if let Some(tracking) = &mut tracking {
+                            tracking.see(step);
+                        }
+                    },
                 );
                 done();
+                let tracked = tracking.map(Tracking::finish).unwrap_or_default();
+                let name = arena.course.as_ref().map(|course| course.name.clone());
                 Run {
                     world: arena.number,
                     seed,
+                    dead: self.setting.dead.sensor(seed, self.setting.sensors.len()),
                     outcome,
+                    course: name.map(|name| (name, tracked)),
                 }
             })
             .collect()

@@ -1,8 +1,9 @@
 //! What the bench asks of a navigator: a tick from what the robot senses to a twist.
 
-use super::body::Rectangle;
+use super::body::Body;
 use super::vehicle::Limits;
 use crate::recording::BeamView;
+use crate::track::Piece;
 use fuzzypilot::ports::RangeReading;
 
 /// What a navigator is told before it sets off. It is made anew for every run.
@@ -16,10 +17,12 @@ pub struct Mission {
     pub goal_radius: f64,
     /// Polyline from start to goal, both included, m: a planner's path, or the straight line and no more.
     pub route: Vec<[f64; 2]>,
+    /// The route as lines and arcs, where it is more than points; then `route` is the same as points, close together.
+    pub pieces: Vec<Piece>,
     /// Whether the route is a planner's, which knew the mapped obstacles. False: only the straight line is given.
     pub planned: bool,
     /// The body.
-    pub body: Rectangle,
+    pub body: Body,
     /// What the body can do; `limits.speed` is also the run's speed cap.
     pub limits: Limits,
     /// The range sensors, in the order of [`Inputs::ranges`].

@@ -2,11 +2,12 @@
 
 use super::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use crate::recording::BeamView;
+use crate::run::segment;
 use crate::si;
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::guide::StoredPath;
 use fuzzypilot::navigate::{
-    Footprint, Manoeuvre, Navigator as Engine, NavigatorParams, RangeSet, Setup, Task, presets,
+    Manoeuvre, Navigator as Engine, NavigatorParams, RangeSet, Setup, Task, presets,
 };
 use fuzzypilot::params::{Limits, Mount};
 use fuzzypilot::ports::Range;
@@ -18,6 +19,9 @@ const SENSORS: usize = 32;
 
 /// The most points of a path.
 const POINTS: usize = 1024;
+
+/// The most lines and arcs of one.
+const PIECES: usize = 16;
 
 /// Distance of a path's points, m; longer paths have them wider apart.
 const SPACING: f64 = 0.15;
@@ -31,7 +35,7 @@ pub struct Ours {
     setup: Setup<SENSORS>,
     engine: Box<Engine<SENSORS>>,
     goal: Point,
-    path: Option<Box<StoredPath<1, POINTS>>>,
+    path: Option<Box<StoredPath<PIECES, POINTS>>>,
     /// Directions of a lidar's beams; none with single sensors.
     beams: Vec<Angle>,
 }
@@ -52,12 +56,10 @@ impl Ours {
     ///
     /// As [`Ours::new`].
     pub fn with(mission: &Mission, mut params: NavigatorParams<SENSORS>) -> Self {
-        let length = si::metres(mission.body.half_length);
-        params.footprint = Footprint::Rectangle {
-            front: length,
-            rear: length,
-            half_width: si::metres(mission.body.half_width),
-        };
+        params.footprint = mission
+            .body
+            .footprint()
+            .expect("the mission's body has few vertices");
         let limits = mission.limits;
         params.limits = Limits {
             speed: si::speed(limits.speed),
@@ -72,7 +74,7 @@ impl Ours {
         let (sensors, beams) = sensors(&mission.sensors, &params.sensors);
         params.sensors = sensors;
         let setup = params.setup().expect("the mission's robot can be driven");
-        let path = mission.planned.then(|| path(&mission.route));
+        let path = mission.planned.then(|| path(mission));
         let [x, y] = mission.goal;
         Self {
             setup,
@@ -154,8 +156,18 @@ fn sensors(views: &[BeamView], like: &RangeSet<SENSORS>) -> (RangeSet<SENSORS>, 
     (set, beams)
 }
 
-/// The route with evenly spaced points, rounded, and its tangents.
-fn path(route: &[[f64; 2]]) -> Box<StoredPath<1, POINTS>> {
+/// The route as it is, of lines and arcs, or a planner's with evenly spaced points, rounded, and its tangents.
+fn path(mission: &Mission) -> Box<StoredPath<PIECES, POINTS>> {
+    let mut path = Box::new(StoredPath::new());
+    if (1..=PIECES).contains(&mission.pieces.len()) {
+        path.begin_segments(false);
+        for piece in &mission.pieces {
+            path.push_segment(segment(piece)).expect("there is room");
+        }
+        path.commit(false).expect("the pieces follow each other");
+        return path;
+    }
+    let route = &mission.route;
     let length: f64 = route.windows(2).map(|leg| distance(leg[0], leg[1])).sum();
     let count = ((length / SPACING).ceil() as usize).clamp(1, POINTS - 1);
     let mut points = spaced(route, length / count as f64, count);
@@ -165,7 +177,6 @@ fn path(route: &[[f64; 2]]) -> Box<StoredPath<1, POINTS>> {
             *point = [0, 1].map(|k| 0.25 * around[0][k] + 0.5 * around[1][k] + 0.25 * around[2][k]);
         }
     }
-    let mut path = Box::new(StoredPath::new());
     path.begin_points(false);
     let last = points.len() - 1;
     for i in 0..=last {

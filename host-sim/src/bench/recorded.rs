@@ -2,6 +2,7 @@
 
 use super::arena::{Arena, Circle};
 use super::attempt::{Outcome, PERIOD, Setting, Step, drive};
+use super::body::Body;
 use super::controllers::Controller;
 use super::discs::Discs;
 use crate::recording::{Disc, Frame, Recording};
@@ -18,7 +19,7 @@ pub fn record(
     let mission = setting.mission(arena);
     let mut navigator = (controller.build)(&mission);
     let mut frames = Vec::new();
-    let half_track = setting.body.half_width;
+    let half_track = setting.body.half_width();
     let outcome = drive(
         arena,
         &Discs::new(&arena.circles),
@@ -34,6 +35,10 @@ pub fn record(
         seed,
         period: PERIOD,
         robot_radius: setting.body.outer_radius(),
+        outline: match setting.body {
+            Body::Disc(_) => Vec::new(),
+            _ => setting.body.corners([0.0; 3]),
+        },
         obstacles: arena
             .circles
             .iter()

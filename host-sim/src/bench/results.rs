@@ -2,7 +2,9 @@
 
 use super::attempt::{Ending, Outcome};
 use super::campaign::Run;
+use super::cost::{DeadSensors, Sound};
 use super::statistics::{bootstrap, median, wilson};
+use super::tracking::{Tracked, pooled};
 use serde::{Deserialize, Serialize};
 
 /// What was run: the same for all of a campaign.
@@ -21,6 +23,9 @@ pub struct Conditions {
     /// Where the cylinders come from that the path knows nothing of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unmapped: Option<String>,
+    /// The robot's footprint.
+    #[serde(default = "jackal")]
+    pub body: String,
     /// Speed cap, m/s.
     pub speed: f64,
     /// First seed.
@@ -29,6 +34,11 @@ pub struct Conditions {
     pub seeds: u64,
     /// What is not ideal about sensors and odometry, in words.
     pub disturbance: String,
+}
+
+/// The body of results that name none.
+fn jackal() -> String {
+    "jackal".to_owned()
 }
 
 /// The figures of a set of runs.
@@ -44,6 +54,9 @@ pub struct Figures {
     pub timeout: f64,
     /// Share that reported to be blocked and kept to it.
     pub blocked: f64,
+    /// Share that ended at the goal or reported to be blocked: what a trap leaves to wish for.
+    #[serde(default)]
+    pub out_or_blocked: f64,
     /// Mean of the benchmark's score, 0 to 0.5.
     pub score: f64,
     /// Mean time of the successful runs, s; zero if there are none.
@@ -52,10 +65,16 @@ pub struct Figures {
     pub median_min_clearance_m: f64,
     /// RMS over the runs of each run's RMS distance from the given route, m.
     pub cross_track_rms_m: f64,
+    /// Largest distance from the given route in any run, m.
+    #[serde(default)]
+    pub cross_track_max_m: f64,
     /// RMS over the runs of the change of the commanded yaw rate, rad/s².
     pub omega_rate_rms: f64,
     /// Longest time without progress in any run, s.
     pub longest_stall_s: f64,
+    /// How often, in all runs together, there was none for more than 5 s without a report.
+    #[serde(default)]
+    pub stalls: u32,
 }
 
 /// 95 % intervals, low and high.
@@ -74,10 +93,16 @@ pub struct Intervals {
 }
 
 /// A run in a world's list.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeedResult {
     /// Seed.
     pub seed: u64,
+    /// The sensor that was dead, if one was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dead_sensor: Option<usize>,
+    /// How far from a route of known shape it was.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tracking: Vec<Tracked>,
     /// What came out.
     #[serde(flatten)]
     pub outcome: Outcome,
@@ -88,6 +113,12 @@ pub struct SeedResult {
 pub struct WorldResult {
     /// Number.
     pub world: u32,
+    /// Name of its route, if that has a known shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub route: Option<String>,
+    /// How far from it the runs were, RMS over them and the largest of any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tracking: Vec<Tracked>,
     /// Figures of its runs.
     #[serde(flatten)]
     pub figures: Figures,
@@ -109,6 +140,12 @@ pub struct Results {
     pub figures: Figures,
     /// Their 95 % intervals.
     pub intervals_95: Intervals,
+    /// Sensors that were dead one at a time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dead_sensors: Option<DeadSensors>,
+    /// The same worlds and seeds with a sound robot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound: Option<Sound>,
     /// Worlds, by number.
     pub per_world: Vec<WorldResult>,
 }
@@ -132,47 +169,66 @@ impl Figures {
             collision: share(Ending::Collision),
             timeout: share(Ending::Timeout),
             blocked: share(Ending::Blocked),
+            out_or_blocked: share(Ending::Reached) + share(Ending::Blocked),
             score: mean(|o| o.score),
             mean_time_s: reached.iter().fold(0.0, |sum, t| sum + t) / reached.len().max(1) as f64,
             median_min_clearance_m: median(&mut clearances),
             cross_track_rms_m: mean(|o| o.cross_track_rms_m * o.cross_track_rms_m).sqrt(),
+            cross_track_max_m: outcomes
+                .iter()
+                .map(|o| o.cross_track_max_m)
+                .fold(0.0, f64::max),
             omega_rate_rms: mean(|o| o.omega_rate_rms * o.omega_rate_rms).sqrt(),
             longest_stall_s: outcomes
                 .iter()
                 .map(|o| o.longest_stall_s)
                 .fold(0.0, f64::max),
+            stalls: outcomes.iter().map(|o| o.stalls).sum(),
         }
     }
 }
 
-impl Results {
-    /// Of runs whose worlds come one after the other.
-    pub fn of(conditions: Conditions, shard: Option<[u32; 2]>, runs: &[Run]) -> Self {
-        let per_world = runs
-            .chunk_by(|a, b| a.world == b.world)
-            .map(|runs| {
-                let outcomes: Vec<Outcome> = runs.iter().map(|r| r.outcome).collect();
-                WorldResult {
-                    world: runs[0].world,
-                    figures: Figures::of(&outcomes),
-                    attempts: runs
-                        .iter()
-                        .map(|r| SeedResult {
-                            seed: r.seed,
-                            outcome: r.outcome,
-                        })
-                        .collect(),
-                }
-            })
-            .collect();
-        Self::of_worlds(conditions, shard, per_world)
-    }
+/// Runs whose worlds come one after the other, by world.
+pub fn by_world(runs: &[Run]) -> Vec<WorldResult> {
+    let worlds = runs.chunk_by(|a, b| a.world == b.world);
+    worlds
+        .map(|runs| {
+            let outcomes: Vec<Outcome> = runs.iter().map(|r| r.outcome).collect();
+            let tracked: Vec<&[Tracked]> = runs
+                .iter()
+                .filter_map(|r| r.course.as_ref())
+                .map(|(_, tracked)| tracked.as_slice())
+                .collect();
+            WorldResult {
+                world: runs[0].world,
+                route: runs[0].course.as_ref().map(|(name, _)| name.clone()),
+                tracking: pooled(&tracked),
+                figures: Figures::of(&outcomes),
+                attempts: runs
+                    .iter()
+                    .map(|r| SeedResult {
+                        seed: r.seed,
+                        dead_sensor: r.dead,
+                        tracking: r
+                            .course
+                            .as_ref()
+                            .map(|(_, tracked)| tracked.clone())
+                            .unwrap_or_default(),
+                        outcome: r.outcome,
+                    })
+                    .collect(),
+            }
+        })
+        .collect()
+}
 
-    /// Of worlds' results.
-    pub fn of_worlds(
+impl Results {
+    /// Of worlds' results, and of the same worlds' with a sound robot if they were driven, too.
+    pub fn of(
         conditions: Conditions,
         shard: Option<[u32; 2]>,
         per_world: Vec<WorldResult>,
+        sound: Option<Vec<WorldResult>>,
     ) -> Self {
         let outcomes: Vec<Outcome> = per_world
             .iter()
@@ -196,11 +252,15 @@ impl Results {
             collision_worlds: resampled(|o| f64::from(u8::from(o.ending == Ending::Collision))),
             score_worlds: resampled(|o| o.score),
         };
+        let figures = Figures::of(&outcomes);
+        let sound = sound.map(|worlds| Sound::new(&figures, worlds));
         Self {
             conditions,
             shard,
-            figures: Figures::of(&outcomes),
+            figures,
             intervals_95,
+            dead_sensors: DeadSensors::of(&per_world, sound.as_ref()),
+            sound,
             per_world,
         }
     }

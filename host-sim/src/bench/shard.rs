@@ -40,11 +40,26 @@ impl Shard {
     }
 }
 
+/// What was read of a controller's campaign.
+#[derive(Default)]
+struct Parts {
+    seen: Vec<u32>,
+    count: u32,
+    worlds: Vec<WorldResult>,
+    /// The worlds of each part with a sound robot.
+    sound: Vec<Vec<WorldResult>>,
+}
+
+fn in_order(mut worlds: Vec<WorldResult>) -> Vec<WorldResult> {
+    worlds.sort_by_key(|w| w.world);
+    worlds
+}
+
 /// Puts the parts of campaigns together: one result a controller, as if it had been run whole. `files` are names, for
 /// messages, and what each holds.
 pub fn merge(files: &[(String, Vec<Results>)]) -> Result<Vec<Results>, String> {
     let mut merged: Vec<Results> = Vec::new();
-    let mut parts: Vec<(Vec<u32>, u32, Vec<WorldResult>)> = Vec::new();
+    let mut parts: Vec<Parts> = Vec::new();
     for (name, results) in files {
         for result in results {
             let Some([index, count]) = result.shard else {
@@ -57,38 +72,46 @@ pub fn merge(files: &[(String, Vec<Results>)]) -> Result<Vec<Results>, String> {
                 .position(|m| m.conditions.controller == result.conditions.controller);
             let at = known.unwrap_or_else(|| {
                 merged.push(result.clone());
-                parts.push((Vec::new(), count, Vec::new()));
+                parts.push(Parts {
+                    count,
+                    ..Parts::default()
+                });
                 merged.len() - 1
             });
-            let (seen, of, worlds) = &mut parts[at];
+            let part = &mut parts[at];
             let controller = &result.conditions.controller;
-            if merged[at].conditions != result.conditions || *of != count {
+            if merged[at].conditions != result.conditions || part.count != count {
                 return Err(format!(
                     "{name}: {controller}: part {index}/{count} of another campaign than {}; allowed: parts of one",
                     files[0].0
                 ));
             }
-            if seen.contains(&index) {
+            if part.seen.contains(&index) {
                 return Err(format!(
                     "{name}: {controller}: part {index}/{count} a second time; allowed: every part once"
                 ));
             }
-            seen.push(index);
-            worlds.extend(result.per_world.iter().cloned());
+            part.seen.push(index);
+            part.worlds.extend(result.per_world.iter().cloned());
+            part.sound
+                .extend(result.sound.as_ref().map(|s| s.per_world.clone()));
         }
     }
     merged
         .into_iter()
         .zip(parts)
-        .map(|(result, (seen, count, mut worlds))| {
-            if let Some(missing) = (0..count).find(|k| !seen.contains(k)) {
+        .map(|(result, part)| {
+            if let Some(missing) = (0..part.count).find(|k| !part.seen.contains(k)) {
                 return Err(format!(
-                    "{}: part {missing}/{count} is missing; allowed: all parts",
-                    result.conditions.controller
+                    "{}: part {missing}/{} is missing; allowed: all parts",
+                    result.conditions.controller, part.count
                 ));
             }
-            worlds.sort_by_key(|w| w.world);
-            Ok(Results::of_worlds(result.conditions, None, worlds))
+            // Parts of one campaign have it all or none.
+            let sound = (part.sound.len() == part.seen.len())
+                .then(|| in_order(part.sound.into_iter().flatten().collect()));
+            let worlds = in_order(part.worlds);
+            Ok(Results::of(result.conditions, None, worlds, sound))
         })
         .collect()
 }

@@ -13,7 +13,7 @@ pub mod unmapped;
 pub mod wall;
 
 use super::arena::Arena;
-use super::body::Rectangle;
+use super::body::Body;
 use error::WorldError;
 use numbers::Numbers;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub const PLACES: &str =
 
 /// The worlds of a place that were asked for, in the order of their numbers. Whether a body gets through them is left to
 /// [`check::check`].
-pub fn load(place: &str, numbers: &Numbers, body: &Rectangle) -> Result<Vec<Arena>, WorldError> {
+pub fn load(place: &str, numbers: &Numbers, body: &Body) -> Result<Vec<Arena>, WorldError> {
     let path = Path::new(place);
     let mut arenas = if let Some(kind) = place.strip_prefix("generated:") {
         generate::make(kind, numbers)?
@@ -51,11 +51,13 @@ pub fn load(place: &str, numbers: &Numbers, body: &Rectangle) -> Result<Vec<Aren
 }
 
 /// Gives a world the shortest route that is not too tight; the straight line if there is none.
-fn plan(arena: &mut Arena, body: &Rectangle) {
+fn plan(arena: &mut Arena, body: &Body) {
     let start = [arena.start[0], arena.start[1]];
+    let least = body.inner_radius();
     arena.route = PLANNED
-        .iter()
-        .chain([&body.inner_radius()])
-        .find_map(|r| planner::route(&arena.circles, *r, start, arena.goal, 0.0))
+        .into_iter()
+        .filter(|r| *r > least)
+        .chain([least])
+        .find_map(|r| planner::route(&arena.circles, r, start, arena.goal, 0.0))
         .unwrap_or_else(|| vec![start, arena.goal]);
 }

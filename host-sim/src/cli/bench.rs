@@ -9,10 +9,10 @@ use clap::Args;
 pub use conditions::Task;
 use conditions::Trouble;
 use host_sim::bench::attempt::Setting;
-use host_sim::bench::body::JACKAL;
+use host_sim::bench::body::Body;
 use host_sim::bench::campaign::Campaign;
 use host_sim::bench::controllers::{self, Controller};
-use host_sim::bench::results::{Conditions, Results};
+use host_sim::bench::results::{Conditions, Results, by_world};
 use host_sim::bench::shard::Shard;
 use host_sim::bench::worlds::{self, numbers::Numbers, unmapped};
 use host_sim::bench::{arena::Arena, sensors};
@@ -40,6 +40,10 @@ pub struct BenchArguments {
     /// cone16, cone8, ultrasonic5, lidar720, or cones:COUNT:FIELD:WIDTH in degrees.
     #[arg(long, default_value = "cone16", value_name = "NAME")]
     sensors: String,
+    /// The robot's outline: jackal (rectangle:0.508x0.430), rectangle:LENGTHxWIDTH, disc:RADIUS, or polygon:X,Y:X,Y:… with 3
+    /// to 8 vertices counter-clockwise around the centre of rotation; metres.
+    #[arg(long, default_value = "jackal", value_name = "SHAPE")]
+    body: String,
     /// Speed cap, m/s.
     #[arg(long, default_value_t = 1.0, value_parser = super::number(0.05, 5.0), allow_hyphen_values = true)]
     speed: f64,
@@ -54,6 +58,10 @@ pub struct BenchArguments {
     first_seed: u64,
     #[command(flatten, next_help_heading = "What goes wrong")]
     trouble: Trouble,
+    /// Also drive the same worlds and seeds with a sound robot (mild noise, all sensors alive, exact odometry), and say
+    /// what goes wrong costs. `--dead each` does so by itself.
+    #[arg(long)]
+    cost: bool,
     /// Threads; as many as there are cores when left out. The results do not depend on it.
     #[arg(long, value_parser = whole(1, 4096), allow_hyphen_values = true)]
     threads: Option<u64>,
@@ -77,6 +85,7 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         .map_err(|e| named("--controllers", &arguments.controllers, e))?;
     let sensors = sensors::named(&arguments.sensors)
         .map_err(|e| named("--sensors", &arguments.sensors, e))?;
+    let body = Body::parse(&arguments.body).map_err(|e| named("--body", &arguments.body, e))?;
     let numbers = Numbers::parse(&arguments.numbers)
         .map_err(|e| named("--numbers", &arguments.numbers, e))?;
     let shard = match &arguments.shard {
@@ -86,14 +95,16 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.report {
         check_folder_of("--report", folder)?;
     }
-    let arenas = arenas(arguments, &numbers)?;
+    let arenas = arenas(arguments, &numbers, &body)?;
     let arenas = match shard {
         Some(shard) => shard.of(arenas),
         None => arenas,
     };
 
     let mut setting = Setting::new(sensors, arguments.speed, arguments.task.planned());
+    setting.body = body;
     arguments.trouble.apply(&mut setting)?;
+    check_cost(arguments, &setting)?;
     let campaign = Campaign {
         arenas,
         seeds: (arguments.first_seed..arguments.first_seed + arguments.seeds).collect(),
@@ -106,7 +117,11 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
     let results = pool.install(|| run(arguments, &campaign, &chosen, shard));
     let simulated: f64 = results
         .iter()
-        .flat_map(|r| &r.per_world)
+        .flat_map(|r| {
+            r.per_world
+                .iter()
+                .chain(r.sound.iter().flat_map(|s| &s.per_world))
+        })
         .flat_map(|w| &w.attempts)
         .map(|a| a.outcome.time_s)
         .sum();
@@ -119,11 +134,33 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         let most = arguments.most_replays as usize;
         report::write(folder, &campaign, &chosen, &results, most)?;
     }
-    print(format_args!("{}\n", table::of(&results)))?;
+    print(table::all(&results))?;
     print(format_args!(
         "{simulated:.0} s driven, {:.0} × real time a thread\n",
         simulated / spent
     ))
+}
+
+/// Refuses a comparison of which nothing would be learned.
+fn check_cost(arguments: &BenchArguments, setting: &Setting) -> Result<(), BadInput> {
+    let sensors = setting.sensors.len() as u64;
+    if arguments.trouble.each_dead() && arguments.seeds < sensors {
+        return Err(BadInput(format!(
+            "--dead each: --seeds {} leave sensors untried; allowed with --seeds {sensors} or more",
+            arguments.seeds
+        )));
+    }
+    let sound = setting.sound();
+    let same = sound.disturbance == setting.disturbance
+        && sound.dead == setting.dead
+        && sound.drift == setting.drift;
+    if arguments.cost && same {
+        return Err(BadInput(
+            "--cost: nothing goes wrong; allowed with --harsh, --noise, --dropout, --cross-talk, --specular, --dead or --drift"
+                .to_owned(),
+        ));
+    }
+    Ok(())
 }
 
 /// Results as the JSON file has them.
@@ -134,8 +171,12 @@ pub fn json(results: &[Results]) -> anyhow::Result<String> {
 }
 
 /// The worlds that were asked for, with what the path does not know.
-fn arenas(arguments: &BenchArguments, numbers: &Numbers) -> anyhow::Result<Vec<Arena>> {
-    let mut arenas = worlds::load(&arguments.worlds, numbers, &JACKAL)?;
+fn arenas(
+    arguments: &BenchArguments,
+    numbers: &Numbers,
+    body: &Body,
+) -> anyhow::Result<Vec<Arena>> {
+    let mut arenas = worlds::load(&arguments.worlds, numbers, body)?;
     if arenas.is_empty() {
         return Err(BadInput(format!(
             "--numbers {}: no such world in {}; allowed are numbers that are there",
@@ -162,7 +203,15 @@ fn arenas(arguments: &BenchArguments, numbers: &Numbers) -> anyhow::Result<Vec<A
         }
         (None, _) => {}
     }
-    worlds::check::check(&arguments.worlds, &arenas, &JACKAL)?;
+    if arenas.iter().any(|a| a.course.is_some()) && arguments.task != Task::Path {
+        return Err(BadInput(format!(
+            "--task {}: {} are to be followed; allowed with --task path",
+            arguments.task.name(),
+            arguments.worlds
+        ))
+        .into());
+    }
+    worlds::check::check(&arguments.worlds, &arenas, body)?;
     Ok(arenas)
 }
 
@@ -172,12 +221,22 @@ fn run(
     chosen: &[Controller],
     shard: Option<Shard>,
 ) -> Vec<Results> {
-    let bar = bar((campaign.arenas.len() * campaign.seeds.len() * chosen.len()) as u64);
+    let sound = (arguments.cost || arguments.trouble.each_dead()).then(|| Campaign {
+        setting: campaign.setting.sound(),
+        ..campaign.clone()
+    });
+    let rounds = if sound.is_some() { 2 } else { 1 };
+    let runs = campaign.arenas.len() * campaign.seeds.len() * chosen.len() * rounds;
+    let bar = bar(runs as u64);
     let results = chosen
         .iter()
         .map(|controller| {
             bar.set_message(controller.name);
-            let runs = campaign.run(controller, &|| bar.inc(1));
+            let done = || bar.inc(1);
+            let worlds = by_world(&campaign.run(controller, &done));
+            let sound = sound
+                .as_ref()
+                .map(|sound| by_world(&sound.run(controller, &done)));
             let unmapped = arguments.unmapped.as_ref();
             let conditions = Conditions {
                 controller: controller.name.to_owned(),
@@ -186,12 +245,13 @@ fn run(
                 worlds: arguments.worlds.clone(),
                 numbers: arguments.numbers.clone(),
                 unmapped: unmapped.map(|file| file.display().to_string()),
+                body: arguments.body.clone(),
                 speed: arguments.speed,
                 first_seed: arguments.first_seed,
                 seeds: arguments.seeds,
                 disturbance: arguments.trouble.words(),
             };
-            Results::of(conditions, shard.map(|s| [s.index, s.count]), &runs)
+            Results::of(conditions, shard.map(|s| [s.index, s.count]), worlds, sound)
         })
         .collect();
     bar.finish_and_clear();

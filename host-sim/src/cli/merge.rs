@@ -27,7 +27,7 @@ pub fn execute(arguments: &MergeArguments) -> anyhow::Result<()> {
     if let Some(file) = &arguments.json {
         put(file, super::bench::json(&whole)?.as_bytes())?;
     }
-    print(format_args!("{}\n", table::of(&whole)))
+    print(table::all(&whole))
 }
 
 fn read(file: &Path) -> Result<Vec<Results>, BadInput> {

@@ -21,15 +21,31 @@ const STRIP_GAP: f64 = 16.0;
 // Okabe and Ito's blue and orange, and a red dark enough to differ from the orange in lightness as well.
 const FOLLOW: RGBColor = RGBColor(0x00, 0x72, 0xB2);
 const AVOID: RGBColor = RGBColor(0xE6, 0x9F, 0x00);
-const STOP: RGBColor = RGBColor(0xA8, 0x10, 0x24);
+const ESCAPE: RGBColor = RGBColor(0xCC, 0x79, 0xA7);
+pub(super) const STOP: RGBColor = RGBColor(0xA8, 0x10, 0x24);
+const ARRIVED: RGBColor = RGBColor(0x56, 0xB4, 0xE9);
 const OTHER: RGBColor = RGBColor(0x77, 0x77, 0x77);
+
+/// Modes with their colour, and how much each matters where several share a pixel.
+const MODES: [(&str, RGBColor, u8); 6] = [
+    ("follow", FOLLOW, 0),
+    ("avoid", AVOID, 2),
+    ("escape", ESCAPE, 3),
+    ("stop", STOP, 4),
+    ("blocked", STOP, 4),
+    ("arrived", ARRIVED, 1),
+];
+const GRAVEST: u8 = 4;
 const BEAM: RGBColor = RGBColor(0x00, 0x9E, 0x73);
-const OBSTACLE: RGBColor = RGBColor(0x59, 0x61, 0x6B);
-const PATH: RGBColor = RGBColor(0x9A, 0xA0, 0xA6);
+pub(super) const OBSTACLE: RGBColor = RGBColor(0x59, 0x61, 0x6B);
+pub(super) const PATH: RGBColor = RGBColor(0x9A, 0xA0, 0xA6);
 
 /// Most vertices of the trajectory and of a signal: what keeps a run of hours a figure of readable size.
 const MOST_VERTICES: usize = 4000;
 const MOST_MOMENTS: usize = 6;
+
+/// Least radius of an obstacle, pixels.
+const LEAST_RADIUS: f64 = 0.9;
 
 /// Draws a run: the map with path, trajectory by mode, obstacles and what the sensors saw at a few moments, and
 /// below it cross-track error, commanded speed and yaw rate, and clearance over time.
@@ -37,6 +53,35 @@ const MOST_MOMENTS: usize = 6;
 /// # Errors
 /// When the run has no frame with a finite time and pose.
 pub fn run_svg(rec: &Recording) -> Result<String> {
+    svg(rec, &Extras::default())
+}
+
+/// What a figure may show beside the usual.
+#[derive(Clone, Debug)]
+pub struct Extras<'a> {
+    /// Said under the title instead of the seed.
+    pub facts: Option<String>,
+    /// What the recording's obstacles are, in the legend.
+    pub obstacles: &'a str,
+    /// Lines on the map that end in a point: x, y in metres.
+    pub arrows: &'a [Vec<[f64; 2]>],
+}
+
+impl Default for Extras<'_> {
+    fn default() -> Self {
+        Self {
+            facts: None,
+            obstacles: "obstacle",
+            arrows: &[],
+        }
+    }
+}
+
+/// [`run_svg`] with something beside it. The strip of the cross-track error is left out where there is none.
+///
+/// # Errors
+/// As [`run_svg`].
+pub fn svg(rec: &Recording, extras: &Extras<'_>) -> Result<String> {
     let frames: Vec<&Frame> = rec
         .frames
         .iter()
@@ -50,35 +95,43 @@ pub fn run_svg(rec: &Recording) -> Result<String> {
     let map = map_panel(rec, &frames);
     let moments = moments(rec, &frames);
     let strips_top = map.rect.bottom + 84.0;
-    let height = strips_top + 4.0 * STRIP_HEIGHT + 3.0 * STRIP_GAP + 58.0;
+    let strips = if on_path(&frames) { 4.0 } else { 3.0 };
+    let height = strips_top + strips * STRIP_HEIGHT + (strips - 1.0) * STRIP_GAP + 58.0;
     document(WIDTH, height, |canvas| {
-        heading(canvas, rec, &frames)?;
-        legend(canvas, rec, &frames, &moments)?;
-        draw_map(canvas, rec, &frames, &map, &moments)?;
+        heading(canvas, rec, &frames, extras)?;
+        legend(canvas, rec, &frames, &moments, extras)?;
+        draw_map(canvas, rec, &frames, &map, &moments, extras.arrows)?;
         draw_strips(canvas, rec, &frames, strips_top, &moments)
     })
 }
 
+fn known(mode: &str) -> Option<&'static (&'static str, RGBColor, u8)> {
+    MODES.iter().find(|(name, ..)| *name == mode)
+}
+
+/// The modes that have a colour of their own, with it as HTML has it.
+pub fn colours() -> impl Iterator<Item = (&'static str, String)> {
+    let spelt = |c: RGBColor| format!("#{:02x}{:02x}{:02x}", c.0, c.1, c.2);
+    MODES
+        .iter()
+        .map(move |(name, colour, _)| (*name, spelt(*colour)))
+}
+
 fn mode_colour(mode: &str) -> RGBColor {
-    match mode {
-        "follow" => FOLLOW,
-        "avoid" => AVOID,
-        "stop" => STOP,
-        _ => OTHER,
-    }
+    known(mode).map_or(OTHER, |(_, colour, _)| *colour)
 }
 
 /// How much a mode matters where several share a pixel.
 fn rank(mode: &str) -> u8 {
-    match mode {
-        "stop" => 3,
-        "avoid" => 2,
-        "follow" => 0,
-        _ => 1,
-    }
+    known(mode).map_or(1, |(_, _, rank)| *rank)
 }
 
-fn heading(canvas: &Canvas, rec: &Recording, frames: &[&Frame]) -> Result<()> {
+/// Whether there is a path that a cross-track error was measured from.
+fn on_path(frames: &[&Frame]) -> bool {
+    frames.iter().any(|frame| frame.cross_track.is_finite())
+}
+
+fn heading(canvas: &Canvas, rec: &Recording, frames: &[&Frame], extras: &Extras<'_>) -> Result<()> {
     canvas.text(
         &fitted(&rec.scenario, 24.0, RIGHT - LEFT),
         (LEFT, 28.0),
@@ -95,10 +148,11 @@ fn heading(canvas: &Canvas, rec: &Recording, frames: &[&Frame]) -> Result<()> {
     // An empty sum is a negative zero.
     let driven = driven.abs();
     let lasted = frames[frames.len() - 1].t - frames[0].t;
-    let facts = format!(
-        "seed {}  ·  {lasted:.1} s  ·  {driven:.1} m driven",
-        rec.seed
-    );
+    let first = match &extras.facts {
+        Some(facts) => facts.clone(),
+        None => format!("seed {}", rec.seed),
+    };
+    let facts = format!("{first}  ·  {lasted:.1} s  ·  {driven:.1} m driven");
     let line = if rec.variant.trim().is_empty() {
         facts
     } else {
@@ -109,7 +163,13 @@ fn heading(canvas: &Canvas, rec: &Recording, frames: &[&Frame]) -> Result<()> {
 }
 
 /// One entry a kind of thing that the map shows.
-fn legend(canvas: &Canvas, rec: &Recording, frames: &[&Frame], moments: &[usize]) -> Result<()> {
+fn legend(
+    canvas: &Canvas,
+    rec: &Recording,
+    frames: &[&Frame],
+    moments: &[usize],
+    extras: &Extras<'_>,
+) -> Result<()> {
     let y = 82.0;
     let mut x = LEFT;
     let mut entry = |name: &str, symbol: &dyn Fn(f64) -> Result<()>| -> Result<()> {
@@ -123,21 +183,28 @@ fn legend(canvas: &Canvas, rec: &Recording, frames: &[&Frame], moments: &[usize]
             canvas.dashes(&[(x, y), (x + 24.0, y)], (6.0, 4.0), 1.3, PATH.to_rgba())
         })?;
     }
-    for mode in ["follow", "avoid", "stop"] {
+    for (mode, ..) in MODES {
         if frames.iter().any(|frame| frame.mode == mode) {
             entry(mode, &|x| {
                 canvas.line(&[(x, y), (x + 24.0, y)], 3.0, mode_colour(mode).to_rgba())
             })?;
         }
     }
-    if frames.iter().any(|frame| rank(frame.mode) == 1) {
+    if frames.iter().any(|frame| known(frame.mode).is_none()) {
         entry("other mode", &|x| {
             canvas.line(&[(x, y), (x + 24.0, y)], 3.0, OTHER.to_rgba())
         })?;
     }
     if !rec.obstacles.is_empty() {
-        entry("obstacle", &|x| {
-            canvas.disc((x + 15.0, y), 7.0, OBSTACLE.to_rgba())
+        let small = drawable(rec).all(|disc| disc.radius < 0.05);
+        entry(extras.obstacles, &|x| {
+            let radius = if small { 2.0 } else { 7.0 };
+            canvas.disc((x + 15.0, y), radius, OBSTACLE.to_rgba())
+        })?;
+    }
+    if !extras.arrows.is_empty() {
+        entry("decided twist", &|x| {
+            arrow(canvas, &[(x + 2.0, y), (x + 24.0, y)])
         })?;
     }
     entry("robot at start", &|x| {
@@ -259,7 +326,7 @@ fn finite_radius(radius: f64) -> f64 {
     }
 }
 
-fn drawable(rec: &Recording) -> impl Iterator<Item = &Disc> {
+pub(super) fn drawable(rec: &Recording) -> impl Iterator<Item = &Disc> {
     rec.obstacles.iter().filter(|disc| {
         [disc.x, disc.y, disc.radius]
             .into_iter()
@@ -368,6 +435,7 @@ fn draw_map(
     frames: &[&Frame],
     map: &Panel,
     moments: &[usize],
+    arrows: &[Vec<[f64; 2]>],
 ) -> Result<()> {
     map.axes(canvas, true)?;
     let scale = map.rect.width() / (map.x.end - map.x.start);
@@ -392,7 +460,8 @@ fn draw_map(
     let mut named = Vec::new();
     for disc in drawable(rec) {
         let centre = map.at(disc.x, disc.y);
-        let radius = disc.radius * scale;
+        // On a large map a small thing is a dot, but never nothing.
+        let radius = (disc.radius * scale).max(LEAST_RADIUS);
         let shape = Rect::around(centre, 2.0 * radius, 2.0 * radius);
         let mut name_at = centre;
         let mut room = 1.8 * radius;
@@ -451,6 +520,15 @@ fn draw_map(
     }
 
     trajectory(canvas, frames, map, &mut placer)?;
+    for line in arrows {
+        let line: Vec<Point> = line
+            .iter()
+            .map(|point| map.at(point[0], point[1]))
+            .collect();
+        if line.iter().all(|point| view.contains(*point)) {
+            arrow(canvas, &line)?;
+        }
+    }
 
     let radius = finite_radius(rec.robot_radius) * scale;
     let pose = |frame: &Frame| (map.at(frame.truth[0], frame.truth[1]), frame.truth[2]);
@@ -520,8 +598,35 @@ fn badge(canvas: &Canvas, text: &str, at: Point) -> Result<()> {
     canvas.text(text, at, 11.5, RGBColor(255, 255, 255), CENTRED)
 }
 
+/// A line with a small head at its end.
+fn arrow(canvas: &Canvas, line: &[Point]) -> Result<()> {
+    let [.., before, tip] = line else {
+        return Ok(());
+    };
+    canvas.line(line, 0.9, INK.to_rgba())?;
+    let (dx, dy) = (tip.0 - before.0, tip.1 - before.1);
+    let length = dx.hypot(dy);
+    if length == 0.0 {
+        return Ok(());
+    }
+    let (ux, uy) = (dx / length, dy / length);
+    let head = |side: f64| {
+        (
+            tip.0 - 3.6 * ux - side * 1.6 * uy,
+            tip.1 - 3.6 * uy + side * 1.6 * ux,
+        )
+    };
+    let beyond = (tip.0 + ux, tip.1 + uy);
+    canvas.polygon(&[beyond, head(1.0), head(-1.0)], INK.to_rgba())
+}
+
 /// The true pose's way, a line a stretch of one mode.
-fn trajectory(canvas: &Canvas, frames: &[&Frame], map: &Panel, placer: &mut Placer) -> Result<()> {
+pub(super) fn trajectory(
+    canvas: &Canvas,
+    frames: &[&Frame],
+    map: &Panel,
+    placer: &mut Placer,
+) -> Result<()> {
     let points: Vec<(Point, &str)> = frames
         .iter()
         .map(|frame| (map.at(frame.truth[0], frame.truth[1]), frame.mode))
@@ -538,7 +643,7 @@ fn trajectory(canvas: &Canvas, frames: &[&Frame], map: &Panel, placer: &mut Plac
             None => stretches.push((vec![point], mode)),
         }
     }
-    for urgency in 0..=3 {
+    for urgency in 0..=GRAVEST {
         // What matters more lies on top.
         for (stretch, mode) in stretches.iter().filter(|(_, mode)| rank(mode) == urgency) {
             canvas.line(stretch, 2.6, mode_colour(mode).to_rgba())?;
@@ -573,7 +678,7 @@ fn spaced<'a>(points: &[(Point, &'a str)]) -> Vec<(Point, &'a str)> {
 }
 
 /// Points at least `apart` pixels from each other along the line, ends kept.
-fn thinned(points: &[Point], apart: f64) -> Vec<Point> {
+pub(super) fn thinned(points: &[Point], apart: f64) -> Vec<Point> {
     let mut apart = apart;
     loop {
         let mut kept: Vec<Point> = Vec::new();
@@ -653,12 +758,15 @@ fn draw_strips(
             frame.clearance.min(roof)
         }
     };
-    let strips = [
-        Strip {
+    let mut strips = Vec::new();
+    if on_path(frames) {
+        strips.push(Strip {
             name: "cross-track\nerror [m]",
             value: &error,
             y: spread(&error, 0.1),
-        },
+        });
+    }
+    strips.extend([
         Strip {
             name: "speed\n[m/s]",
             value: &speed,
@@ -674,7 +782,7 @@ fn draw_strips(
             value: &room,
             y: floor - 0.06 * (roof - floor)..roof + 0.08 * (roof - floor),
         },
-    ];
+    ]);
     let bands = bands(frames, &time);
     let count = strips.len();
     let mut top = top;
@@ -935,6 +1043,7 @@ mod tests {
             seed: 7,
             period: 0.1,
             robot_radius: 0.3,
+            outline: Vec::new(),
             obstacles,
             path: vec![
                 (0..=200)

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::tempdir;
 
-fn sim(dir: &Path) -> Command {
+pub fn sim(dir: &Path) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("host-sim"));
     command.current_dir(dir);
     command

@@ -1,5 +1,6 @@
 //! The navigation bench: geometry against independent computations, worlds and their faults, campaigns from outside.
 
+mod campaigns;
 mod command;
 mod contact;
 mod figures;

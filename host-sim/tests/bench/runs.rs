@@ -23,6 +23,7 @@ fn open_ground(circles: Vec<Circle>) -> Arena {
         goal_radius: 0.5,
         sealed: false,
         route: vec![[0.0, 0.0], [6.0, 0.0]],
+        course: None,
     }
 }
 
@@ -147,7 +148,7 @@ fn results_depend_on_world_and_seed_and_on_nothing_else() {
     assert_eq!(alone.len(), 18);
     assert_eq!(campaign(4, 0), alone);
     // Fewer runs before it change nothing in a run.
-    let later: Vec<_> = alone.iter().filter(|r| r.seed >= 2).copied().collect();
+    let later: Vec<_> = alone.iter().filter(|r| r.seed >= 2).cloned().collect();
     assert_eq!(campaign(2, 2), later);
     // And seeds do make a difference.
     assert_ne!(alone[0].outcome, alone[1].outcome);

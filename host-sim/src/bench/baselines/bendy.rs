@@ -5,8 +5,9 @@
 //! parameters `OA_BR_LOOKAHEAD`, `OA_BR_CONT_RATIO`, `OA_BR_CONT_ANGLE`, `OA_MARGIN_MAX`, `OA_DB_EXPIRE`). Written from
 //! the description, scaled from boats to a robot of half a metre.
 
+use super::destination::Destination;
 use super::echoes::Memory;
-use super::route::{Route, distance};
+use super::route::distance;
 use super::steer::{stopping_speed, towards};
 use crate::bench::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use crate::world::wrap;
@@ -55,7 +56,7 @@ const LAST: f64 = 170.0;
 #[derive(Clone, Debug)]
 pub struct Bendy {
     mission: Mission,
-    route: Route,
+    destination: Destination,
     parameters: Parameters,
     memory: Memory,
     /// Bearing chosen last, rad in odometry's frame.
@@ -66,7 +67,7 @@ impl Bendy {
     /// For a mission.
     pub fn new(mission: &Mission, parameters: Parameters) -> Self {
         Self {
-            route: Route::new(&mission.route),
+            destination: Destination::new(mission, parameters.carrot),
             mission: mission.clone(),
             parameters,
             memory: Memory::new(parameters.keep, 2.5, 0.08),
@@ -143,18 +144,11 @@ impl Navigator for Bendy {
     fn tick(&mut self, inputs: &Inputs<'_>) -> Command {
         let limits = self.mission.limits;
         let [x, y, heading] = inputs.pose;
-        let left = distance([x, y], self.mission.goal);
-        if left < 0.15 {
+        let Some(target) = self.destination.from([x, y]) else {
             return Command::stop(Mode::Arrived);
-        }
-        self.memory.observe(&self.mission.sensors, inputs);
-        let destination = if self.mission.planned {
-            let at = self.route.locate([x, y]);
-            self.route.point(at + self.parameters.carrot)
-        } else {
-            self.mission.goal
         };
-        let (bearing, margin) = self.bearing([x, y], destination);
+        self.memory.observe(&self.mission.sensors, inputs);
+        let (bearing, margin) = self.bearing([x, y], target.at);
         // Without the margin it goes on at half speed, as a rover does that ArduPilot's simple avoidance slows.
         let speed = if margin < self.parameters.margin {
             limits.speed * 0.5
@@ -163,7 +157,7 @@ impl Navigator for Bendy {
         };
         let [speed, yaw_rate] = towards(bearing - heading, speed, &limits);
         Command {
-            speed: speed.min(stopping_speed(left, &limits)),
+            speed: speed.min(stopping_speed(target.left, &limits)),
             yaw_rate,
             mode: Mode::Avoid,
         }

@@ -3,10 +3,10 @@
 //!
 //! Source: D. Fox, W. Burgard, S. Thrun, *The Dynamic Window Approach to Collision Avoidance*, IEEE Robotics &
 //! Automation Magazine 4(1), 1997; equations 11 to 16. Obstacles are the echoes of the last moments, as there; the body
-//! is the rectangle.
+//! is the footprint.
 
+use super::destination::Destination;
 use super::echoes::Memory;
-use super::route::{Route, distance};
 use crate::bench::body::BodyFrame;
 use crate::bench::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use crate::bench::vehicle::along;
@@ -56,7 +56,7 @@ const STEP: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct Dwa {
     mission: Mission,
-    route: Route,
+    destination: Destination,
     parameters: Parameters,
     memory: Memory,
     /// Points in the body's frame, with their distance from the body.
@@ -67,7 +67,7 @@ impl Dwa {
     /// For a mission.
     pub fn new(mission: &Mission, parameters: Parameters) -> Self {
         Self {
-            route: Route::new(&mission.route),
+            destination: Destination::new(mission, parameters.carrot),
             mission: mission.clone(),
             parameters,
             memory: Memory::new(parameters.keep, 2.5, 0.05),
@@ -78,7 +78,7 @@ impl Dwa {
     /// Free length of the arc of a twist, m, at most `look`; for turning in place the free angle times the outer radius.
     fn free(&self, [v, w]: [f64; 2]) -> f64 {
         let p = self.parameters;
-        let body = self.mission.body;
+        let body = &self.mission.body;
         // Time for a step of the outermost point.
         let rate = v.abs().max(w.abs() * body.outer_radius());
         if rate < 1e-6 {
@@ -106,13 +106,12 @@ impl Navigator for Dwa {
         let p = self.parameters;
         let limits = self.mission.limits;
         let [x, y, heading] = inputs.pose;
-        let left = distance([x, y], self.mission.goal);
-        if left < 0.15 {
+        let Some(target) = self.destination.from([x, y]) else {
             return Command::stop(Mode::Arrived);
-        }
+        };
         self.memory.observe(&self.mission.sensors, inputs);
         let reach = p.look + self.mission.body.outer_radius() + p.margin;
-        let (frame, body) = (BodyFrame::new(inputs.pose), self.mission.body);
+        let (frame, body) = (BodyFrame::new(inputs.pose), &self.mission.body);
         self.points.clear();
         self.points.extend(
             self.memory
@@ -122,20 +121,12 @@ impl Navigator for Dwa {
                 .filter(|[u, v]| u * u + v * v < reach * reach)
                 .map(|point| (point, body.distance(point))),
         );
-        let carrot = if self.mission.planned {
-            let at = self.route.locate([x, y]);
-            self.route.point(at + p.carrot)
-        } else {
-            self.mission.goal
-        };
-        let target = libm::atan2(carrot[1] - y, carrot[0] - x);
-
         let [v0, w0] = inputs.twist;
         let braking = p.braking * limits.acceleration;
         let slowest = (v0 - limits.acceleration * WINDOW).max(0.0);
         let fastest = (v0 + limits.acceleration * WINDOW)
             .min(limits.speed)
-            .min((2.0 * braking * left).sqrt().max(0.1));
+            .min((2.0 * braking * target.left).sqrt().max(0.1));
         let turn = limits.yaw_acceleration * WINDOW;
         let mut best: Option<(f64, [f64; 2])> = None;
         for i in 0..SPEEDS {
@@ -150,7 +141,7 @@ impl Navigator for Dwa {
                 }
                 // Section 4.2: the heading that the robot would have after braking its turn.
                 let settled = heading + w * WINDOW + w * w.abs() / (2.0 * limits.yaw_acceleration);
-                let aligned = 1.0 - wrap(target - settled).abs() / std::f64::consts::PI;
+                let aligned = 1.0 - wrap(target.bearing - settled).abs() / std::f64::consts::PI;
                 let [a, b, c] = p.weights;
                 let value = a * aligned + b * free / p.look + c * v / limits.speed;
                 if best.is_none_or(|(most, _)| value > most) {
@@ -167,7 +158,7 @@ impl Navigator for Dwa {
             // Section 5.3 of the paper: nothing admissible, so turn away until something is.
             _ => Command {
                 speed: 0.0,
-                yaw_rate: 0.8_f64.copysign(wrap(target - heading)),
+                yaw_rate: 0.8_f64.copysign(wrap(target.bearing - heading)),
                 mode: Mode::Escape,
             },
         }

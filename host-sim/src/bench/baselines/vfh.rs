@@ -6,7 +6,7 @@
 //! where the histogram ahead is high. The robot is a circle to it.
 
 use super::certainty::{CELL, Certainty};
-use super::route::{Route, distance};
+use super::destination::Destination;
 use super::steer::{stopping_speed, towards};
 use crate::bench::body::to_body;
 use crate::bench::navigator::{Command, Inputs, Mission, Mode, Navigator};
@@ -59,7 +59,7 @@ impl Default for Parameters {
 #[derive(Clone, Debug)]
 pub struct Vfh {
     mission: Mission,
-    route: Route,
+    destination: Destination,
     parameters: Parameters,
     grid: Certainty,
     /// Binary polar histogram, sector 0 along odometry's x.
@@ -72,7 +72,7 @@ impl Vfh {
     /// For a mission.
     pub fn new(mission: &Mission, parameters: Parameters) -> Self {
         Self {
-            route: Route::new(&mission.route),
+            destination: Destination::new(mission, parameters.carrot),
             mission: mission.clone(),
             parameters,
             grid: Certainty::default(),
@@ -114,7 +114,7 @@ impl Vfh {
                 let centre = if side == 1 { circle } else { -circle };
                 let reach = circle + p.radius;
                 if u * u + (v - centre) * (v - centre) < reach * reach
-                    && u > -self.mission.body.half_length
+                    && u > -self.mission.body.rear()
                 {
                     limits[side] = if side == 1 {
                         limits[1].min(beside)
@@ -155,7 +155,7 @@ impl Vfh {
             .filter(|(_, certainty)| *certainty >= 6)
             .map(|([dx, dy], _)| to_body([0.0, 0.0, heading], [dx, dy]))
             .filter(|[u, v]| *u > 0.0 && v.abs() < p.radius)
-            .map(|[u, _]| u - self.mission.body.half_length)
+            .map(|[u, _]| u - self.mission.body.front())
             .fold(f64::INFINITY, f64::min)
     }
 }
@@ -204,24 +204,16 @@ impl Navigator for Vfh {
         let p = self.parameters;
         let limits = self.mission.limits;
         let [x, y, heading] = inputs.pose;
-        let left = distance([x, y], self.mission.goal);
-        if left < 0.15 {
+        let Some(target) = self.destination.from([x, y]) else {
             return Command::stop(Mode::Arrived);
-        }
-        self.grid.observe(&self.mission.sensors, inputs);
-        let carrot = if self.mission.planned {
-            let at = self.route.locate([x, y]);
-            self.route.point(at + p.carrot)
-        } else {
-            self.mission.goal
         };
-        let target = libm::atan2(carrot[1] - y, carrot[0] - x);
+        self.grid.observe(&self.mission.sensors, inputs);
         let masked = self.masked(inputs);
-        let Some(direction) = self.choose(&masked, target, heading) else {
+        let Some(direction) = self.choose(&masked, target.bearing, heading) else {
             // Trapped: look around, towards the target.
             return Command {
                 speed: 0.0,
-                yaw_rate: 1.0_f64.copysign(wrap(target - heading)),
+                yaw_rate: 1.0_f64.copysign(wrap(target.bearing - heading)),
                 mode: Mode::Escape,
             };
         };
@@ -231,7 +223,7 @@ impl Navigator for Vfh {
         let [speed, yaw_rate] = towards(direction - heading, limits.speed * slow, &limits);
         Command {
             speed: speed
-                .min(stopping_speed(left, &limits))
+                .min(stopping_speed(target.left, &limits))
                 .min(stopping_speed(ahead - 0.05, &limits)),
             yaw_rate,
             mode: Mode::Avoid,

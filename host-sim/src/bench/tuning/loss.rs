@@ -42,8 +42,10 @@ mod tests {
             score,
             min_clearance_m: 0.2,
             cross_track_rms_m: 0.0,
+            cross_track_max_m: 0.0,
             omega_rate_rms: 1.0,
             longest_stall_s: 1.0,
+            stalls: 0,
         }
     }
 

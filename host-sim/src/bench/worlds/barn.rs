@@ -93,6 +93,7 @@ impl Common {
             goal_radius: self.goal_radius,
             sealed: false,
             route,
+            course: None,
         }
     }
 }

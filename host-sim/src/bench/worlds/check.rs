@@ -4,12 +4,12 @@ use super::error::WorldError;
 use super::planner;
 use crate::bench::arena::Arena;
 use crate::bench::attempt::body_clearance;
-use crate::bench::body::Rectangle;
+use crate::bench::body::Body;
 use rayon::prelude::*;
 
 /// Refuses worlds whose start or goal lies in an obstacle, and those without a way for a disc that fits into the body:
 /// what that one cannot pass, the body cannot. Sealed worlds must not have one.
-pub fn check(place: &str, arenas: &[Arena], body: &Rectangle) -> Result<(), WorldError> {
+pub fn check(place: &str, arenas: &[Arena], body: &Body) -> Result<(), WorldError> {
     arenas.par_iter().try_for_each(|arena| {
         fault(arena, body).map_or(Ok(()), |why| {
             Err(WorldError::Unusable {
@@ -21,7 +21,7 @@ pub fn check(place: &str, arenas: &[Arena], body: &Rectangle) -> Result<(), Worl
     })
 }
 
-fn fault(arena: &Arena, body: &Rectangle) -> Option<String> {
+fn fault(arena: &Arena, body: &Body) -> Option<String> {
     let [gx, gy] = arena.goal;
     let [sx, sy, _] = arena.start;
     let moving: Vec<_> = arena.movers.iter().map(|m| m.at(0.0)).collect();

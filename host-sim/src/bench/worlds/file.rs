@@ -165,6 +165,7 @@ impl Raw {
             goal_radius: self.goal_radius.into_inner(),
             sealed: self.sealed,
             route: self.route.into_iter().map(Spanned::into_inner).collect(),
+            course: None,
         })
     }
 }

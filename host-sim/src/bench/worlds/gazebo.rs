@@ -51,6 +51,7 @@ pub fn read_folder(folder: &Path, numbers: &Numbers) -> Result<Vec<Arena>, World
                 goal_radius: GOAL_RADIUS,
                 sealed: false,
                 route,
+                course: None,
             })
         })
         .collect()

@@ -1,9 +1,11 @@
 //! Worlds that are made: `generated:KIND`, a world for every number. The same number is the same world everywhere.
+//! `generated:routes` are a few of known shape instead, see `routes`.
 
 mod automaton;
 mod corridor;
 mod open;
 mod rooms;
+mod routes;
 mod traps;
 
 use super::error::WorldError;
@@ -98,8 +100,12 @@ const USUAL: u32 = 100;
 pub fn make(text: &str, numbers: &Numbers) -> Result<Vec<Arena>, WorldError> {
     let mut parts = text.split(',');
     let name = parts.next().unwrap_or_default();
+    if name == routes::NAME {
+        return routes::make(parts.next(), numbers);
+    }
     let kind = KINDS.iter().find(|k| k.name == name).ok_or_else(|| {
-        let known: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
+        let mut known: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
+        known.push(routes::NAME);
         WorldError::wrong("generated", format!("the kind `{name}`"), known.join(", "))
     })?;
     let mut options = Options::default();
@@ -161,6 +167,7 @@ fn arena(circles: Vec<Circle>, start: [f64; 2], goal: [f64; 2], radius: f64) -> 
         goal_radius: 0.5,
         sealed: false,
         route,
+        course: None,
     }
 }
 

@@ -103,6 +103,11 @@ impl Trouble {
         Ok(())
     }
 
+    /// Whether every sensor is dead in turn.
+    pub fn each_dead(&self) -> bool {
+        self.dead.as_deref() == Some("each")
+    }
+
     fn disturbance(&self) -> Disturbance {
         let base = if self.harsh {
             Disturbance::HARSH

@@ -22,7 +22,7 @@ pub fn write(
     let runs = folder.join("runs");
     std::fs::create_dir_all(&runs)
         .with_context(|| format!("{}: cannot be created", runs.display()))?;
-    let table = format!("{}\n", super::table::of(results));
+    let table = super::table::all(results);
     put(&folder.join("table.txt"), table.as_bytes())?;
     put(&folder.join("per-world.csv"), per_world(results).as_bytes())?;
 
@@ -53,7 +53,7 @@ pub fn write(
                 seed: attempt.seed,
                 ending: outcome.ending,
                 time: outcome.time_s,
-                picture: picture(arena, &campaign.setting.body, &recording),
+                picture: picture(arena, &campaign.setting.body, &recording, outcome.ending)?,
                 replay: name,
             });
         }

@@ -124,6 +124,7 @@ mod tests {
     use crate::fuzzy::sample::fan;
     use crate::fuzzy::tune::data::{Data, Row};
     use crate::fuzzy::tune::{Fit, Selection};
+    use std::sync::atomic::Ordering;
 
     /// What a fan answers, on a grid.
     fn answers(fan: &System) -> Data {

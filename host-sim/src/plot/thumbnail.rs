@@ -1,0 +1,94 @@
+//! A run in little: the world, the route, the way in the modes' colours and the outline where it ended. For pages with
+//! many runs.
+
+use super::run::{OBSTACLE, PATH, STOP, drawable, thinned, trajectory};
+use super::{INK, Panel, Placer, Point, Rect, document, extent};
+use crate::recording::{Frame, Recording};
+use anyhow::{Result, ensure};
+use plotters::style::Color;
+
+/// Height of the picture, pixels, and its widest.
+const HEIGHT: f64 = 320.0;
+const WIDEST: f64 = 380.0;
+
+/// Room around everything, m.
+const ROOM: f64 = 0.3;
+
+/// What a thumbnail shows beside the run.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// Centre (m) and radius (m) of the goal.
+    pub goal: [f64; 3],
+    /// Corners of the robot where the run ended, m.
+    pub outline: &'a [[f64; 2]],
+    /// Whether it touched something there.
+    pub touched: bool,
+}
+
+/// Draws it.
+///
+/// # Errors
+/// When the run has no frame.
+pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
+    let frames: Vec<&Frame> = rec.frames.iter().collect();
+    ensure!(!frames.is_empty(), "a run without a frame");
+    let [goal_x, goal_y, goal_radius] = place.goal;
+    let along = |k: usize| {
+        let track = frames.iter().map(|f| f.truth[k]);
+        let route = rec.path.iter().flatten().map(|p| p[k]);
+        let outline = place.outline.iter().map(|p| p[k]);
+        let discs = drawable(rec).flat_map(|d| {
+            let middle = [d.x, d.y][k];
+            [middle - d.radius, middle + d.radius]
+        });
+        let goal = [goal_x, goal_y][k];
+        let goal = [goal - goal_radius, goal + goal_radius];
+        let (low, high) = extent(track.chain(route).chain(outline).chain(discs).chain(goal))
+            .unwrap_or((0.0, 1.0));
+        low - ROOM..high + ROOM
+    };
+    let (x, y) = (along(0), along(1));
+    let (across, up) = (x.end - x.start, y.end - y.start);
+    let scale = (HEIGHT / up).min(WIDEST / across);
+    let (width, height) = ((across * scale).ceil(), (up * scale).ceil());
+    let map = Panel {
+        rect: Rect::new(0.0, 0.0, width, height),
+        x,
+        y,
+        x_ticks: Vec::new(),
+        y_ticks: Vec::new(),
+        x_name: String::new(),
+        y_name: String::new(),
+        x_numbers: false,
+    };
+    document(width, height, |canvas| {
+        canvas.ring(
+            map.at(goal_x, goal_y),
+            goal_radius * scale,
+            1.2,
+            PATH.to_rgba(),
+        )?;
+        for disc in drawable(rec) {
+            canvas.disc(
+                map.at(disc.x, disc.y),
+                disc.radius * scale,
+                OBSTACLE.to_rgba(),
+            )?;
+        }
+        for route in &rec.path {
+            let points: Vec<Point> = route.iter().map(|p| map.at(p[0], p[1])).collect();
+            canvas.dashes(&thinned(&points, 0.5), (5.0, 4.0), 1.2, PATH.to_rgba())?;
+        }
+        let mut nowhere = Placer {
+            bounds: map.rect,
+            taken: Vec::new(),
+            points: Vec::new(),
+        };
+        trajectory(canvas, &frames, &map, &mut nowhere)?;
+        let mut outline: Vec<Point> = place.outline.iter().map(|p| map.at(p[0], p[1])).collect();
+        outline.extend(outline.first().copied());
+        let colour = if place.touched { STOP } else { INK };
+        canvas.polygon(&outline, colour.mix(0.18))?;
+        canvas.line(&outline, 1.4, colour.to_rgba())
+    })
+}
