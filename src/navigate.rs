@@ -16,6 +16,7 @@
 //! speeds.
 
 mod barrier;
+mod digest;
 mod escape;
 mod field;
 mod footprint;
@@ -26,6 +27,7 @@ mod params;
 mod polar;
 pub mod presets;
 mod sensors;
+mod stage;
 mod steer;
 mod steps;
 mod supervisor;
@@ -40,6 +42,7 @@ pub use near::{MAX_NEAR, Motion, Near};
 pub use params::{NavigatorParams, Setup};
 pub use polar::{MapParams, PolarMap, SECTORS};
 pub use sensors::{Echo, Echoes, Eyes, RangeSet, SENSORS};
+pub use stage::{Probe, Stage};
 pub use steer::SteerParams;
 pub use steps::{Bearing, Steps, Vector};
 pub use supervisor::{Manoeuvre, SupervisorParams};
@@ -162,6 +165,17 @@ impl<const N: usize> Navigator<N> {
 
     /// One control period, after [`Navigator::see`]: `pose` is the believed one. Call it every period.
     pub fn step(&mut self, setup: &Setup<N>, pose: Pose, task: Task<'_>) -> NavigationRecord {
+        self.step_observed(setup, pose, task, &mut ())
+    }
+
+    /// [`Navigator::step`], watched.
+    pub fn step_observed<P: Probe>(
+        &mut self,
+        setup: &Setup<N>,
+        pose: Pose,
+        task: Task<'_>,
+        probe: &mut P,
+    ) -> NavigationRecord {
         let p = &setup.params;
         let outline = &setup.outline;
         self.memory.update(
@@ -172,14 +186,18 @@ impl<const N: usize> Navigator<N> {
             pose,
             self.last.linear,
         );
+        probe.mark(Stage::Remember);
         // What is decided now acts after the latency; until then the last command does.
         let moved = Motion::of(setup.brakes.mean(self.before, self.last), p.latency);
         let ahead = moved.from(pose);
         self.near
             .collect(self.memory.points(), outline, moved, LOOK);
+        probe.mark(Stage::Near);
         self.map.draw(&p.map, &self.near, outline);
+        probe.mark(Stage::Map);
 
         let course = self.course(setup, pose, ahead, task);
+        probe.mark(Stage::Course);
         let heading = choose(
             &p.heading,
             &setup.weights,
@@ -191,6 +209,7 @@ impl<const N: usize> Navigator<N> {
                 look: Steps::of(p.map.look),
             },
         );
+        probe.mark(Stage::Heading);
         let decided = self.supervisor.decide(
             &p.supervisor,
             &supervisor::Situation {
@@ -213,9 +232,12 @@ impl<const N: usize> Navigator<N> {
             );
             self.field.shun(&p.field, ahead.at + tried);
         }
+        probe.mark(Stage::Supervise);
         let manoeuvre = decided.manoeuvre;
         let wanted = self.behave(setup, manoeuvre, &course, heading.as_ref(), ahead);
+        probe.mark(Stage::Behave);
         let guarded = self.guard(setup, wanted);
+        probe.mark(Stage::Guard);
         self.before = core::mem::replace(&mut self.last, guarded.twist);
         NavigationRecord {
             manoeuvre,

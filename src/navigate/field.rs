@@ -10,6 +10,7 @@
 //! The work is cut into slices: a tick does no more than its budget, and a new field is ready every few ticks. Between
 //! two fields the guide point stays where it is in the world.
 
+use super::digest::Digest;
 use super::memory::Memory;
 use super::steps::{Steps, Vector, retain};
 use crate::geometry::{Point, square};
@@ -237,6 +238,14 @@ impl Field {
     /// The point to head for, world; none before the first field is ready.
     pub fn guide(&self) -> Option<Point> {
         self.guide
+    }
+
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for (cost, way) in self.cost.iter().zip(&self.way) {
+            digest.word(u32::from(*cost) << 16 | u32::from(*way));
+        }
+        digest.point(self.guide.unwrap_or_default());
+        digest.word(self.shunned.len() as u32);
     }
 
     /// A slice of work. Returns whether a field was finished.

@@ -9,6 +9,7 @@
 //! Cost: one pass over the points, each in the view of three sensors (of all, if they do not share a place), and at most
 //! five new points a sensor.
 
+use super::digest::Digest;
 use super::footprint::Outline;
 use super::sensors::{Echo, Echoes, Eye, Eyes, View};
 use super::steps::{Bearing, Steps, Vector, retain};
@@ -116,6 +117,15 @@ impl Memory {
     /// A place seen from the rolling origin in the world.
     pub(super) fn to_world(&self, local: Vector) -> Point {
         self.origin + local.point()
+    }
+
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for record in &self.records {
+            digest.pair(record.x, record.y);
+            digest.pair(record.seen.into(), record.confidence.into());
+        }
+        digest.point(self.origin);
+        digest.word(self.tick);
     }
 
     fn to_body(&self, record: &Record) -> Vector {

@@ -1,5 +1,6 @@
 //! What stands near the robot in the frame of the predicted body: the list that the geometry of a tick works on.
 
+use super::digest::Digest;
 use super::footprint::Outline;
 use super::steps::{Bearing, Steps, Vector};
 use crate::geometry::{Point, Pose};
@@ -80,6 +81,13 @@ impl Near {
             {
                 *farthest = spot;
             }
+        }
+    }
+
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for spot in &self.spots {
+            digest.pair(spot.x, spot.y);
+            digest.word(spot.clearance().bits().cast_unsigned());
         }
     }
 

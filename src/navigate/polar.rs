@@ -7,6 +7,7 @@
 //!
 //! Cost: a point touches only the sectors in whose corridor it lies, found outward from its own direction.
 
+use super::digest::Digest;
 use super::footprint::Outline;
 use super::near::{Near, Spot};
 use super::steps::{Bearing, Steps, Vector};
@@ -84,6 +85,14 @@ impl PolarMap {
     /// Free travel with the soft margin in a sector, not more than the hard one.
     pub fn soft(&self, sector: usize) -> Steps {
         Steps::from_bits(self.soft.get(sector & 63).copied().unwrap_or(0).into())
+    }
+
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for (hard, soft) in self.hard.iter().zip(&self.soft) {
+            digest.pair(*hard, *soft);
+        }
+        digest.word(self.left.bits().cast_unsigned());
+        digest.word(self.right.bits().cast_unsigned());
     }
 
     /// Whether the robot can turn in place by an angle.

@@ -4,7 +4,7 @@ use super::navigator::{Command, Inputs, Mission, Mode, Navigator};
 use crate::recording::BeamView;
 use crate::si;
 use fuzzypilot::geometry::{Point, Pose};
-use fuzzypilot::guide::StoredPath;
+use fuzzypilot::guide::{StoredPath, Waypoint};
 use fuzzypilot::navigate::{
     Footprint, Manoeuvre, Navigator as Engine, NavigatorParams, RangeSet, Setup, Task, presets,
 };
@@ -149,10 +149,21 @@ fn sensors(views: &[BeamView], like: &RangeSet<SENSORS>) -> (RangeSet<SENSORS>, 
     (set, beams)
 }
 
-/// The route with evenly spaced points, rounded, and its tangents.
+/// The route as the library's path.
 fn path(route: &[[f64; 2]]) -> Box<StoredPath<1, POINTS>> {
+    let mut path = Box::new(StoredPath::new());
+    path.begin_points(false);
+    for point in waypoints(route, POINTS) {
+        path.push_point(point).expect("there is room");
+    }
+    path.commit(false).expect("the route has a length");
+    path
+}
+
+/// The route with evenly spaced points, `most` at most, rounded, and its tangents.
+pub fn waypoints(route: &[[f64; 2]], most: usize) -> Vec<Waypoint> {
     let length: f64 = route.windows(2).map(|leg| distance(leg[0], leg[1])).sum();
-    let count = ((length / SPACING).ceil() as usize).clamp(1, POINTS - 1);
+    let count = ((length / SPACING).ceil() as usize).clamp(1, most - 1);
     let mut points = spaced(route, length / count as f64, count);
     for _ in 0..ROUNDING {
         let before = points.clone();
@@ -160,18 +171,15 @@ fn path(route: &[[f64; 2]]) -> Box<StoredPath<1, POINTS>> {
             *point = [0, 1].map(|k| 0.25 * around[0][k] + 0.5 * around[1][k] + 0.25 * around[2][k]);
         }
     }
-    let mut path = Box::new(StoredPath::new());
-    path.begin_points(false);
     let last = points.len() - 1;
-    for i in 0..=last {
-        let (from, to) = (points[i.saturating_sub(1)], points[(i + 1).min(last)]);
-        let heading = libm::atan2(to[1] - from[1], to[0] - from[0]);
-        let [x, y] = points[i];
-        path.push_point(si::pose([x, y, heading]))
-            .expect("there is room");
-    }
-    path.commit(false).expect("the route has a length");
-    path
+    (0..=last)
+        .map(|i| {
+            let (from, to) = (points[i.saturating_sub(1)], points[(i + 1).min(last)]);
+            let heading = libm::atan2(to[1] - from[1], to[0] - from[0]);
+            let [x, y] = points[i];
+            si::pose([x, y, heading])
+        })
+        .collect()
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
