@@ -138,8 +138,18 @@ pub(crate) fn square_root(square: u64) -> u32 {
     root.wrapping_sub(over.into()).wrapping_shr(shift)
 }
 
+/// Square root of a word, rounded down. No division, a third of what [`square_root`] costs.
+pub(crate) fn square_root_of_word(square: u32) -> u32 {
+    if square == 0 {
+        return 0;
+    }
+    let shift = square.leading_zeros() >> 1;
+    root_of_upper(square.wrapping_shl(shift.wrapping_mul(2))).wrapping_shr(shift)
+}
+
 /// Square root, rounded down, of a number from 2^30 on: a table's guess, and a step of Newton's with the guess's own
 /// reciprocal from the table. No division: a Cortex-M0 has none.
+#[inline(always)]
 fn root_of_upper(upper: u32) -> u32 {
     let index = ((upper >> 24) as usize).wrapping_sub(FIRST_ROOT);
     let (root, reciprocal) = ROOTS.get(index).copied().unwrap_or((u16::MAX, 0));

@@ -306,6 +306,7 @@ impl<const N: usize> Navigator<N> {
         let mut contradicted = false;
         // The place ahead that is nearest to the robot, where that is nearer than the cursor.
         let mut nearest = ((guidance.foot - pose.at).norm_squared(), Metres::ZERO);
+        let mut places = heapless::Vec::<Vector, 16>::new();
         for place in self.cursor.ahead(path, spacing) {
             carrot = place.at;
             let away = (place.at - pose.at).norm_squared();
@@ -313,22 +314,21 @@ impl<const N: usize> Navigator<N> {
                 nearest = (away, far);
             }
             let body = Vector::of(frame.to_body(place.at));
-            let hit = |reach: Steps| {
-                let reach = reach.squared();
-                self.near
-                    .spots()
-                    .iter()
-                    .any(|spot| (spot.at() - body).norm_squared() < reach)
-            };
-            if hit(reach) {
+            far = far + spacing;
+            if places.push(body).is_err() || far > look {
+                break;
+            }
+        }
+        let mut touched = self.near.touching(&places, reach);
+        far = Metres::ZERO;
+        while touched != 0 {
+            if touched & 1 != 0 {
                 contradicted = true;
                 clear = false;
                 free &= far > need;
             }
+            touched >>= 1;
             far = far + spacing;
-            if far > look {
-                break;
-            }
         }
         if nearest.1 > Metres::ZERO {
             self.cursor.skip(path, nearest.1);

@@ -222,6 +222,32 @@ impl Outline {
             Shape::Polygon(edges) => clearance_to(edges, point),
         }
     }
+
+    /// Whether a point lies inside the outline and deeper than this, which is 0 or more.
+    pub(super) fn covers(&self, point: Vector, deeper: Steps) -> bool {
+        match &self.shape {
+            Shape::Rectangle {
+                middle,
+                half_length,
+                half_width,
+            } => {
+                (point.x - *middle).abs() < *half_length - deeper
+                    && point.y.abs() < *half_width - deeper
+            }
+            Shape::Disc { radius } => {
+                let inner = *radius - deeper;
+                inner > Steps::ZERO && point.norm_squared() < inner.squared()
+            }
+            Shape::Polygon(edges) => is_inside(edges, point, deeper),
+        }
+    }
+}
+
+/// Whether a point lies deeper inside all edges.
+fn is_inside(edges: &[Edge], point: Vector, deeper: Steps) -> bool {
+    edges
+        .iter()
+        .all(|edge| (point - edge.from).in_frame(edge.along).y > deeper)
 }
 
 fn clearance_to(edges: &[Edge], point: Vector) -> Steps {

@@ -19,8 +19,8 @@ use crate::units::{Angle, Metres, MetresPerSecond};
 use fixed::types::I16F16;
 use heapless::Vec;
 
-/// The most points.
-pub const CAPACITY: usize = 208;
+/// The most points; a power of two.
+pub const CAPACITY: usize = 128;
 
 /// The memory's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +66,8 @@ pub struct Memory {
     records: Vec<Record, CAPACITY>,
     origin: Point,
     tick: u32,
+    /// The point that was last looked at for its place.
+    looked: usize,
     /// Of the last update: the body in the frame of the points.
     body: Vector,
     forward: Bearing,
@@ -84,6 +86,7 @@ impl Memory {
             records: Vec::new(),
             origin: Point::new(Metres::ZERO, Metres::ZERO),
             tick: 0,
+            looked: 0,
             body: Vector::new(Steps::ZERO, Steps::ZERO),
             forward: Bearing::AHEAD,
         }
@@ -126,6 +129,7 @@ impl Memory {
         }
         digest.point(self.origin);
         digest.word(self.tick);
+        digest.word(self.looked as u32);
     }
 
     fn to_body(&self, record: &Record) -> Vector {
@@ -160,8 +164,11 @@ impl Memory {
         let (body, forward) = (self.body, self.forward);
         retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
-            let seen = |eye: &Eye| eye.view(place - eye.at) != View::Outside;
-            outline.clearance(place) < NEAR && !eyes.as_slice().iter().any(seen)
+            let sees = |index: usize| {
+                let eye = eyes.as_slice().get(index);
+                eye.is_some_and(|eye| eye.view(place - eye.at) != View::Outside)
+            };
+            outline.clearance(place) < NEAR && !eyes.around(place).any(sees)
         });
     }
 
@@ -193,12 +200,13 @@ impl Memory {
         echoes: &Echoes<N>,
     ) -> u32 {
         /// Deeper than this inside the robot a point is wrong: there the robot stands.
-        const DEEP: Steps = Steps::lit("-0.03");
+        const DEEP: Steps = Steps::lit("0.03");
         let keep = Steps::of(params.keep).squared();
         let [disproof, support] = [params.disproof, params.support].map(Steps::of);
         /// What a range's noise may be.
         const NOISE: Steps = Steps::lit("0.01");
         let nearer = Steps::of(params.nearer);
+        let alone = eyes.disjoint();
         let snap = params.snap;
         let lifetime = (params.lifetime >> UNIT) as u8;
         let now = (self.tick >> UNIT) as u8;
@@ -208,7 +216,7 @@ impl Memory {
             let place = (record.at() - body).in_frame(forward);
             if place.norm_squared() > keep
                 || now.wrapping_sub(record.seen) > lifetime
-                || outline.clearance(place) < DEEP
+                || outline.covers(place, DEEP)
             {
                 return false;
             }
@@ -218,31 +226,33 @@ impl Memory {
                 else {
                     continue;
                 };
-                let Some(range) = echo.range() else {
-                    continue;
-                };
                 let from_eye = place - eye.at;
                 let view = eye.view(from_eye);
                 if view == View::Outside {
                     continue;
                 }
-                let distance = from_eye.norm_squared();
-                let below = |limit: Steps| limit > Steps::ZERO && distance < limit.squared();
-                if view == View::Sure && below(range - disproof) {
-                    record.confidence = record.confidence.saturating_sub(1);
-                    if record.confidence == 0 {
-                        return false;
+                if let Some(range) = echo.range() {
+                    let distance = from_eye.norm_squared();
+                    let below = |limit: Steps| limit > Steps::ZERO && distance < limit.squared();
+                    if view == View::Sure && below(range - disproof) {
+                        record.confidence = record.confidence.saturating_sub(1);
+                        if record.confidence == 0 {
+                            return false;
+                        }
+                    } else if below(range + support) && !below(range - support) {
+                        record.confidence = SURE;
+                        record.seen = now;
+                        if below(range + nearer) {
+                            explained |= 1u32.wrapping_shl(index as u32);
+                        }
+                        if snap && !below(range + NOISE) {
+                            let place = eye.at + drawn(from_eye, range);
+                            record.move_to(body + place.turned(forward));
+                        }
                     }
-                } else if below(range + support) && !below(range - support) {
-                    record.confidence = SURE;
-                    record.seen = now;
-                    if below(range + nearer) {
-                        explained |= 1u32.wrapping_shl(index as u32);
-                    }
-                    if snap && !below(range + NOISE) {
-                        let place = eye.at + drawn(from_eye, range);
-                        record.move_to(body + place.turned(forward));
-                    }
+                }
+                if alone {
+                    break;
                 }
             }
             true
@@ -283,12 +293,24 @@ impl Memory {
             return;
         };
         if self.records.push(record).is_err() {
-            // Full: the farthest gives way.
-            let body = self.body;
-            let away = |record: &Record| (record.at() - body).norm_squared();
-            if let Some(farthest) = self.records.iter_mut().max_by_key(|r| away(r)) {
-                *farthest = record;
+            self.replace(record);
+        }
+    }
+
+    /// Puts a point in the place of one that is farther away: the farthest of a few, which are others the next time.
+    fn replace(&mut self, record: Record) {
+        const LOOKED: usize = 8;
+        let away = |record: &Record| (record.at() - self.body).norm_squared();
+        let mut farthest = (away(&record), None);
+        for _ in 0..LOOKED {
+            self.looked = self.looked.wrapping_add(1) & (CAPACITY - 1);
+            let known = self.records.get(self.looked).map_or(0, away);
+            if known > farthest.0 {
+                farthest = (known, Some(self.looked));
             }
+        }
+        if let Some(place) = farthest.1.and_then(|index| self.records.get_mut(index)) {
+            *place = record;
         }
     }
 }

@@ -51,15 +51,6 @@ pub(super) fn middle(sector: usize) -> Angle {
     Angle::from_bits(((sector & 63) as i32).wrapping_shl(SECTOR_BITS))
 }
 
-/// The sector that an angle lies in: sector 0 is straight ahead.
-pub(super) fn sector_of(angle: Angle) -> usize {
-    (angle
-        .bits()
-        .wrapping_add(1 << (SECTOR_BITS - 1))
-        .cast_unsigned()
-        >> SECTOR_BITS) as usize
-}
-
 impl Default for PolarMap {
     fn default() -> Self {
         Self::new()
@@ -112,65 +103,78 @@ impl PolarMap {
         self.soft = [look; SECTORS];
         let widths = Widths {
             front: outline.front,
-            flank: outline.half_width,
+            graze: outline.half_width - const { Steps::lit("0.02") },
             hard: outline.half_width + Steps::of(params.hard),
             soft: outline.half_width + Steps::of(params.soft.max(params.hard)),
         };
-        for spot in near.spots() {
-            let at = spot.at();
-            let own = sector_of(at.direction());
-            // A quarter turn and the own sector's other half to either side are enough.
-            for step in 0..=16 {
-                if !self.mark(own.wrapping_add(step), at, &widths) {
-                    break;
-                }
+        // In a direction the nearest point hides the others.
+        let mut nearest = [u8::MAX; 128];
+        let away = |spot: &Spot| spot.at().norm_squared();
+        for (index, spot) in (0..u8::MAX).zip(near.spots()) {
+            let slot = &mut nearest[spot.at().half_sector() as usize & 127];
+            let known = near.spots().get(usize::from(*slot)).map_or(u32::MAX, away);
+            if away(spot) < known {
+                *slot = index;
             }
-            for step in 1..=16 {
-                if !self.mark(own.wrapping_sub(step), at, &widths) {
-                    break;
-                }
-            }
+        }
+        for (half_sector, index) in nearest.iter().enumerate() {
+            let Some(spot) = near.spots().get(usize::from(*index)) else {
+                continue;
+            };
+            self.mark(half_sector.wrapping_add(1) >> 1, spot.at(), &widths);
         }
         let margin = Steps::of(params.turning);
         self.left = room(near, outline, margin, true);
         self.right = room(near, outline, margin, false);
     }
 
-    /// Enters a point into a sector; whether it lies in its corridor at all.
-    fn mark(&mut self, sector: usize, at: Vector, widths: &Widths) -> bool {
-        let sector = sector & 63;
-        let (Some(bearing), Some(hard), Some(soft)) = (
-            MIDDLES.get(sector),
-            self.hard.get_mut(sector),
-            self.soft.get_mut(sector),
-        ) else {
-            return false;
-        };
-        let place = at.in_frame(*bearing);
-        let beside = place.y.abs();
-        if place.x < Steps::ZERO || beside >= widths.soft {
-            return false;
-        }
+    /// Enters a point into the sectors in whose corridors it lies, from its own outward: to the left, then to the right.
+    fn mark(&mut self, own: usize, at: Vector, widths: &Widths) {
         /// A point this far behind the front line is beside the robot, no more before it.
         const PASSED: Steps = Steps::lit("-0.12");
-        /// Flanks that touch no more than this slide along.
-        const GRAZE: Steps = Steps::lit("0.02");
-        let ahead = place.x - widths.front;
-        let beside_flank = ahead < Steps::ZERO && beside > widths.flank - GRAZE;
-        let free = ahead.bits().max(0) as i16;
-        if beside < widths.hard && ahead > PASSED && !beside_flank {
-            *hard = (*hard).min(free);
+        /// A quarter turn and the own sector's other half to either side are enough.
+        const FARTHEST: usize = 16;
+        let mut sector = own;
+        let mut step = 1usize;
+        let mut last = own.wrapping_add(FARTHEST);
+        loop {
+            let place = at.in_frame(MIDDLES[sector & (SECTORS - 1)]);
+            let beside = place.y.abs();
+            if place.x < Steps::ZERO || beside >= widths.soft || sector == last {
+                if step != 1 {
+                    break;
+                }
+                step = usize::MAX;
+                sector = own.wrapping_sub(1);
+                last = own.wrapping_sub(FARTHEST + 1);
+                continue;
+            }
+            let slot = sector & (SECTORS - 1);
+            sector = sector.wrapping_add(step);
+            let ahead = place.x - widths.front;
+            if ahead > Steps::ZERO {
+                let free = ahead.bits() as i16;
+                if free < self.soft[slot] {
+                    self.soft[slot] = free;
+                }
+                if beside < widths.hard && free < self.hard[slot] {
+                    self.hard[slot] = free;
+                }
+            } else if ahead > PASSED
+                && (beside <= widths.graze || ahead == Steps::ZERO)
+                && beside < widths.hard
+            {
+                self.soft[slot] = 0;
+                self.hard[slot] = 0;
+            }
         }
-        if ahead > Steps::ZERO || (beside < widths.hard && ahead > PASSED && !beside_flank) {
-            *soft = (*soft).min(free);
-        }
-        true
     }
 }
 
 struct Widths {
     front: Steps,
-    flank: Steps,
+    /// Flanks that touch no more than this slide along.
+    graze: Steps,
     hard: Steps,
     soft: Steps,
 }
