@@ -299,6 +299,7 @@ const fn arctangent_of_share(i: i64) -> u32 {
 mod tests {
     use crate::integer::{
         Reciprocal, divide, proper_fraction, quotient, ratio, saturate, square_root,
+        square_root_of_word,
     };
 
     /// Numbers at and around every power of two, and pseudo-random ones.
@@ -341,6 +342,18 @@ mod tests {
                 u64::from(square_root((root * root).saturating_sub(1))),
                 root.saturating_sub(1)
             );
+        }
+    }
+
+    #[test]
+    fn roots_of_words_are_those_of_longer_ones() {
+        for n in numbers().flat_map(|n| [n as u32, (n >> 32) as u32]) {
+            assert_eq!(square_root_of_word(n), n.isqrt(), "{n}");
+        }
+        for root in 0u32..1 << 16 {
+            for n in [root * root, (root * root).saturating_add(2 * root)] {
+                assert_eq!(square_root_of_word(n), root);
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 //!
 //! 32 × 32 cells. A cell near a remembered point is dear, never forbidden: a gap that is closed only by uncertainty stays
 //! possible at a price. What was never seen counts as free. Border cells start with the straight way from there to the
-//! carrot; from them the cheapest way is spread inward, always from the cheapest cells on (a bucket of one cell's cost at
+//! carrot; from them the cheapest way is spread inward, always from the cheapest cells on (a bucket of three cells' cost at
 //! a time, as in Dial's algorithm and Δ-stepping), until the robot's cell is settled. Descending from there gives the guide
 //! point.
 //!
@@ -501,14 +501,22 @@ impl Field {
         let first = from.wrapping_sub(SIDE + 1);
         let inside = column.wrapping_sub(1) < SIDE - 2 && row.wrapping_sub(1) < SIDE - 2;
         let (Some(costs), Some(ways), true) = (
-            self.cost.get(first..).and_then(<[u8]>::first_chunk::<AROUND>),
-            self.way.get_mut(first..).and_then(<[u16]>::first_chunk_mut::<AROUND>),
+            self.cost
+                .get(first..)
+                .and_then(<[u8]>::first_chunk::<AROUND>),
+            self.way
+                .get_mut(first..)
+                .and_then(<[u16]>::first_chunk_mut::<AROUND>),
             inside,
         ) else {
             self.relax_at_border(column, row, way, least);
             return;
         };
-        let own = (u32::from(way), straight, here.wrapping_mul(45).wrapping_add(8));
+        let own = (
+            u32::from(way),
+            straight,
+            here.wrapping_mul(45).wrapping_add(8),
+        );
         let mut below = 0;
         let mut beside = 0;
         let mut above = 0;

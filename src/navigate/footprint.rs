@@ -269,3 +269,42 @@ fn clearance_to(edges: &[Edge], point: Vector) -> Steps {
         inside
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Footprint, Steps, Vector};
+    use crate::geometry::Point;
+    use crate::units::Metres;
+
+    #[test]
+    fn what_is_covered_is_deeper_than_its_clearance() {
+        let m = |text| Metres::lit(text);
+        let triangle = [("0.4", "0"), ("-0.2", "0.3"), ("-0.2", "-0.3")];
+        let shapes = [
+            Footprint::Rectangle {
+                front: m("0.3"),
+                rear: m("0.2"),
+                half_width: m("0.215"),
+            },
+            Footprint::Disc { radius: m("0.25") },
+            Footprint::Polygon(
+                triangle
+                    .iter()
+                    .map(|(x, y)| Point::new(m(x), m(y)))
+                    .collect(),
+            ),
+        ];
+        for outline in shapes.map(|shape| shape.outline()) {
+            for deep in [0, 123] {
+                for x in (-2000..2000).step_by(37) {
+                    for y in (-2000..2000).step_by(41) {
+                        let place = Vector::new(Steps::from_bits(x), Steps::from_bits(y));
+                        let deep = Steps::from_bits(deep);
+                        let exact = outline.clearance(place) < -deep;
+                        assert_eq!(outline.covers(place, deep), exact, "{x}, {y}, {deep:?}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -6,8 +6,9 @@
 //! arc is carved away and the right part stays. A silent sensor neither disproves nor supports: if it is dead, nothing is
 //! lost.
 //!
-//! Cost: one pass over the points, each in the view of three sensors (of all, if they do not share a place), and at most
-//! five new points a sensor.
+//! Cost: one pass over the points, each in the view of one to three sensors (of all, if they do not share a place), and at
+//! most five new points a sensor. When the memory is full a new point takes the place of one that is farther away, of
+//! eight that are looked at.
 
 use super::digest::Digest;
 use super::footprint::Outline;
@@ -202,6 +203,7 @@ impl Memory {
         /// Deeper than this inside the robot a point is wrong: there the robot stands.
         const DEEP: Steps = Steps::lit("0.03");
         let keep = Steps::of(params.keep).squared();
+        let reach = outline.reach.squared();
         let [disproof, support] = [params.disproof, params.support].map(Steps::of);
         /// What a range's noise may be.
         const NOISE: Steps = Steps::lit("0.01");
@@ -214,9 +216,10 @@ impl Memory {
         let mut explained = 0u32;
         retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
-            if place.norm_squared() > keep
+            let away = place.norm_squared();
+            if away > keep
                 || now.wrapping_sub(record.seen) > lifetime
-                || outline.covers(place, DEEP)
+                || (away < reach && outline.covers(place, DEEP))
             {
                 return false;
             }

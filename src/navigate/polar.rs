@@ -5,7 +5,8 @@
 //! with a small margin: no heading below a least hard travel is admissible. *Soft* is that with a comfortable margin: it
 //! costs.
 //!
-//! Cost: a point touches only the sectors in whose corridor it lies, found outward from its own direction.
+//! Cost: of the points in a 128th of a turn only the nearest is entered, and it touches only the sectors in whose corridor it
+//! lies, found outward from its own direction.
 
 use super::digest::Digest;
 use super::footprint::Outline;

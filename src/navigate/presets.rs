@@ -74,7 +74,7 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
             shun: 12,
-            budget: 100,
+            budget: 150,
         },
         heading: HeadingParams {
             least: m!("0.08"),

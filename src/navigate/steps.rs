@@ -156,7 +156,11 @@ impl Vector {
         }
         let octant = octant as u32;
         let quadrant = if steep { octant ^ 31 } else { octant };
-        let half = if self.x.0 < 0 { quadrant ^ 63 } else { quadrant };
+        let half = if self.x.0 < 0 {
+            quadrant ^ 63
+        } else {
+            quadrant
+        };
         if self.y.0 < 0 { half ^ 127 } else { half }
     }
 
@@ -276,4 +280,27 @@ pub(super) fn retain<T: Copy, const N: usize>(
         }
     }
     list.truncate(kept);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Steps, Vector};
+
+    #[test]
+    fn a_half_sector_is_the_directions() {
+        for x in (-40_000..=40_000).step_by(1237) {
+            for y in (-40_000..=40_000).step_by(1171) {
+                let place = Vector::new(Steps::from_bits(x), Steps::from_bits(y));
+                let direction = place.direction().bits().cast_unsigned();
+                let exact = direction >> 25;
+                let found = place.half_sector();
+                // A tangent's rounding: 2^-15 beside the boundary.
+                let beside = direction.wrapping_add(1 << 15) & ((1 << 25) - 1);
+                assert!(
+                    found == exact || beside < 1 << 16,
+                    "{x}, {y}: {found}, not {exact}"
+                );
+            }
+        }
+    }
 }

@@ -78,11 +78,7 @@ impl Trajectory {
             fixed::types::I16F16::from_bits(step.bits().wrapping_mul(16)),
         ));
         for _ in 0..ARC_STEPS {
-            if Self::STEP
-                .bits()
-                .wrapping_mul(self.poses.len() as i32)
-                >= length.bits()
-            {
+            if Self::STEP.bits().wrapping_mul(self.poses.len() as i32) >= length.bits() {
                 break;
             }
             self.go(step.metres(), turn);
