@@ -5,8 +5,7 @@
 //! with a small margin: no heading below a least hard travel is admissible. *Soft* is that with a comfortable margin: it
 //! costs.
 //!
-//! Cost: of the points in a 128th of a turn only the nearest is entered, and it touches only the sectors in whose corridor it
-//! lies, found outward from its own direction.
+//! Cost: a point touches only the sectors in whose corridor it lies, found outward from its own direction.
 
 use super::digest::Digest;
 use super::footprint::Outline;
@@ -108,21 +107,9 @@ impl PolarMap {
             hard: outline.half_width + Steps::of(params.hard),
             soft: outline.half_width + Steps::of(params.soft.max(params.hard)),
         };
-        // In a direction the nearest point hides the others.
-        let mut nearest = [u8::MAX; 128];
-        let away = |spot: &Spot| spot.at().norm_squared();
-        for (index, spot) in (0..u8::MAX).zip(near.spots()) {
-            let slot = &mut nearest[spot.at().half_sector() as usize & 127];
-            let known = near.spots().get(usize::from(*slot)).map_or(u32::MAX, away);
-            if away(spot) < known {
-                *slot = index;
-            }
-        }
-        for (half_sector, index) in nearest.iter().enumerate() {
-            let Some(spot) = near.spots().get(usize::from(*index)) else {
-                continue;
-            };
-            self.mark(half_sector.wrapping_add(1) >> 1, spot.at(), &widths);
+        for spot in near.spots() {
+            let own = spot.at().half_sector().wrapping_add(1) >> 1;
+            self.mark(own as usize, spot.at(), &widths);
         }
         let margin = Steps::of(params.turning);
         self.left = room(near, outline, margin, true);
