@@ -16,6 +16,7 @@
 //! speeds.
 
 mod barrier;
+mod digest;
 mod escape;
 mod field;
 mod footprint;
@@ -27,6 +28,7 @@ mod params;
 mod polar;
 pub mod presets;
 mod sensors;
+mod stage;
 mod steer;
 mod steps;
 mod supervisor;
@@ -42,6 +44,7 @@ pub use near::{MAX_NEAR, Motion, Near};
 pub use params::{NavigatorParams, Setup};
 pub use polar::{MapParams, PolarMap, SECTORS};
 pub use sensors::{Echo, Echoes, Eyes, RangeSet, SENSORS};
+pub use stage::{Probe, Stage};
 pub use steer::SteerParams;
 pub use steps::{Bearing, Steps, Vector};
 pub use supervisor::{Manoeuvre, SupervisorParams};
@@ -114,6 +117,9 @@ impl<const N: usize> Default for Navigator<N> {
     }
 }
 
+/// Ticks without contradiction after which a path counts as free.
+const QUIET: u16 = 5;
+
 /// How far from the middle of the body points are looked at.
 const LOOK: Steps = Steps::lit("2");
 
@@ -168,6 +174,17 @@ impl<const N: usize> Navigator<N> {
 
     /// One control period, after [`Navigator::see`]: `pose` is the believed one. Call it every period.
     pub fn step(&mut self, setup: &Setup<N>, pose: Pose, task: Task<'_>) -> NavigationRecord {
+        self.step_observed(setup, pose, task, &mut ())
+    }
+
+    /// [`Navigator::step`], watched.
+    pub fn step_observed<P: Probe>(
+        &mut self,
+        setup: &Setup<N>,
+        pose: Pose,
+        task: Task<'_>,
+        probe: &mut P,
+    ) -> NavigationRecord {
         let p = &setup.params;
         let outline = &setup.outline;
         self.health.update(&p.health, self.echoes.as_slice());
@@ -187,14 +204,18 @@ impl<const N: usize> Navigator<N> {
                 self.memory.assume(&p.memory, eye, range);
             }
         }
+        probe.mark(Stage::Remember);
         // What is decided now acts after the latency; until then the last command does.
         let moved = Motion::of(setup.brakes.mean(self.before, self.last), p.latency);
         let ahead = moved.from(pose);
         self.near
             .collect(self.memory.points(), outline, moved, LOOK);
+        probe.mark(Stage::Near);
         self.map.draw(&p.map, &self.near, outline);
+        probe.mark(Stage::Map);
 
         let course = self.course(setup, pose, ahead, task);
+        probe.mark(Stage::Course);
         let heading = choose(
             &p.heading,
             &setup.weights,
@@ -206,6 +227,7 @@ impl<const N: usize> Navigator<N> {
                 look: Steps::of(p.map.look),
             },
         );
+        probe.mark(Stage::Heading);
         let decided = self.supervisor.decide(
             &p.supervisor,
             &supervisor::Situation {
@@ -228,9 +250,12 @@ impl<const N: usize> Navigator<N> {
             );
             self.field.shun(&p.field, ahead.at + tried);
         }
+        probe.mark(Stage::Supervise);
         let manoeuvre = decided.manoeuvre;
         let wanted = self.behave(setup, manoeuvre, &course, heading.as_ref(), ahead);
+        probe.mark(Stage::Behave);
         let guarded = self.guard(setup, wanted);
+        probe.mark(Stage::Guard);
         self.before = core::mem::replace(&mut self.last, guarded.twist);
         NavigationRecord {
             manoeuvre,
@@ -294,35 +319,39 @@ impl<const N: usize> Navigator<N> {
         let frame = ahead.frame();
         let spacing = const { Metres::lit("0.2") };
         let (mut free, mut clear) = (true, true);
+        let mut short = guidance.foot;
         let mut far = Metres::ZERO;
         let mut carrot = guidance.foot;
         let look = const { Metres::lit("2.2") };
         let mut contradicted = false;
         // The place ahead that is nearest to the robot, where that is nearer than the cursor.
         let mut nearest = ((guidance.foot - pose.at).norm_squared(), Metres::ZERO);
+        let mut places = heapless::Vec::<Vector, 16>::new();
         for place in self.cursor.ahead(path, spacing) {
             carrot = place.at;
+            if far <= const { Metres::lit("0.7") } {
+                short = place.at;
+            }
             let away = (place.at - pose.at).norm_squared();
             if away < nearest.0 {
                 nearest = (away, far);
             }
             let body = Vector::of(frame.to_body(place.at));
-            let hit = |reach: Steps| {
-                let reach = reach.squared();
-                self.near
-                    .spots()
-                    .iter()
-                    .any(|spot| (spot.at() - body).norm_squared() < reach)
-            };
-            if hit(reach) {
+            far = far + spacing;
+            if places.push(body).is_err() || far > look {
+                break;
+            }
+        }
+        let mut touched = self.near.touching(&places, reach);
+        far = Metres::ZERO;
+        while touched != 0 {
+            if touched & 1 != 0 {
                 contradicted = true;
                 clear = false;
                 free &= far > need;
             }
+            touched >>= 1;
             far = far + spacing;
-            if far > look {
-                break;
-            }
         }
         if nearest.1 > Metres::ZERO {
             self.cursor.skip(path, nearest.1);
@@ -332,11 +361,13 @@ impl<const N: usize> Navigator<N> {
         } else {
             self.quiet.saturating_add(1)
         };
-        let close = guidance.cross_track.abs() < const { Metres::lit("0.3") };
+        let close = guidance.cross_track.abs() < const { Metres::lit("0.45") };
+        // A path that nothing contradicts any more is met again soon, without the field.
+        let guided = self.quiet < QUIET;
         let touching = self.near.clearance() < Steps::of(p.supervisor.leave);
         Course {
-            carrot,
-            guided: true,
+            carrot: if guided { carrot } else { short },
+            guided,
             free: free && close && !touching,
             clear: clear && close && !touching,
             to_go: guidance.remaining,
@@ -362,7 +393,7 @@ impl<const N: usize> Navigator<N> {
         match (manoeuvre, heading, &course.guidance) {
             (Manoeuvre::Follow, _, Some(guidance)) => {
                 self.chosen = ahead.heading;
-                follow(
+                let mut twist = follow(
                     &setup.fine,
                     &p.follower,
                     &p.limits,
@@ -370,7 +401,9 @@ impl<const N: usize> Navigator<N> {
                     guidance,
                     self.last,
                 )
-                .twist
+                .twist;
+                twist.linear = twist.linear.min(approach(course.to_go));
+                twist
             }
             (Manoeuvre::Escape, ..) => {
                 self.chosen = ahead.heading;

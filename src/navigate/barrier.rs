@@ -76,6 +76,7 @@ pub fn slow(
     let backward = wanted.linear < MetresPerSecond::ZERO;
     let speed = Steps::of(as_metres(wanted.linear.abs()));
     let looked = lookahead(params, speed);
+    let mut way = Trajectory::new();
     for (driving, arc) in [(false, arcs[0]), (true, arcs[1])] {
         // The arc being driven matters if it is another, and in the direction that is wanted.
         let same = driving
@@ -85,7 +86,7 @@ pub fn slow(
         if same || speed == Steps::ZERO {
             continue;
         }
-        let way = Trajectory::arc(arc, backward, looked);
+        way.bend(arc, backward, looked);
         let free = way.free(near, outline, Steps::of(params.margin));
         if free >= looked {
             continue;
@@ -175,10 +176,10 @@ pub fn gate(
         brakes.toward(driven, rest),
     ];
     let mut best = None::<(Contact, Twist)>;
+    let mut way = Trajectory::new();
     for twist in tries {
-        let Some(contact) =
-            Trajectory::braked(driven, twist, brakes).contact(near, outline, margin)
-        else {
+        way.brake(driven, twist, brakes);
+        let Some(contact) = way.contact(near, outline, margin) else {
             return Guarded {
                 twist,
                 gated: twist != wanted,

@@ -81,6 +81,7 @@ fn best_arc(
 ) -> Option<Twist> {
     let bend = const { PerMetre::lit("2") };
     let mut best = None::<(i32, Twist)>;
+    let mut way = Trajectory::new();
     for (backward, curvature) in [
         (true, PerMetre::ZERO),
         (true, bend),
@@ -92,12 +93,13 @@ fn best_arc(
         if !(if backward { may_backward } else { may_forward }) {
             continue;
         }
-        let free = Trajectory::arc(curvature, backward, LOOK).free(near, outline, margin);
+        way.bend(curvature, backward, LOOK);
+        let free = way.free(near, outline, margin);
         if free < LEAST {
             continue;
         }
-        let way = Trajectory::arc(curvature, backward, free).end();
-        let (cos, _) = (way.direction() - direction).cos_sin();
+        way.bend(curvature, backward, free);
+        let (cos, _) = (way.end().direction() - direction).cos_sin();
         // 2 to 6 quarters.
         let toward = 4i32.wrapping_add(cos.to_bits() >> 29);
         let worth = free.bits().wrapping_mul(toward);

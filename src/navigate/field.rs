@@ -3,16 +3,18 @@
 //!
 //! 32 × 32 cells. A cell near a remembered point is dear, never forbidden: a gap that is closed only by uncertainty stays
 //! possible at a price. What was never seen counts as free. Border cells start with the straight way from there to the
-//! carrot; from them the cheapest way is spread inward, always from the cheapest cells on (a bucket of one cell's cost at
+//! carrot; from them the cheapest way is spread inward, always from the cheapest cells on (a bucket of three cells' cost at
 //! a time, as in Dial's algorithm and Δ-stepping), until the robot's cell is settled. Descending from there gives the guide
 //! point.
 //!
 //! The work is cut into slices: a tick does no more than its budget, and a new field is ready every few ticks. Between
 //! two fields the guide point stays where it is in the world.
 
+use super::digest::Digest;
 use super::memory::Memory;
 use super::steps::{Steps, Vector, retain};
 use crate::geometry::{Point, square};
+use crate::integer::square_root_of_word;
 use crate::params::ParamError;
 use crate::units::{Angle, Metres};
 use fixed::types::I16F16;
@@ -26,8 +28,9 @@ const CELLS: usize = SIDE * SIDE;
 const CELL: Steps = Steps::lit("0.15");
 /// Steps to cells, 24 fractional bits.
 const PER_CELL: i32 = ((1 << 24) + CELL.bits() - 1) / CELL.bits();
-/// Cost of a step between free cells, straight and diagonal.
-const STRAIGHT: u16 = 16;
+/// Costs that are settled together, beyond the cheapest one: three steps between free cells, so that neither many cells are
+/// settled twice nor many rounds find few.
+const BUCKET: u16 = 47;
 /// Cost of a free cell, as a factor with two fractional bits.
 const FREE: u8 = 4;
 
@@ -140,7 +143,9 @@ impl Costs {
             };
             *cost = (factor.to_bits() >> 14).clamp(FREE.into(), u8::MAX.into()) as u8;
         }
-        let cells = Steps::of(far).bits().wrapping_add(CELL.bits() - 1) / CELL.bits();
+        // A point lies at most half a cell beside its own cell's middle.
+        let beyond = Steps::of(far) - CELL.half();
+        let cells = beyond.bits().max(0).wrapping_add(CELL.bits() - 1) / CELL.bits();
         Self { by_square, cells }
     }
 }
@@ -165,6 +170,8 @@ pub struct Field {
     way: [u16; CELLS],
     /// Cells whose neighbours are to be looked at, a row an entry.
     active: [u32; SIDE],
+    /// The cheapest of them in each row.
+    least: [u16; SIDE],
     /// World: the corner of the first cell.
     corner: Point,
     carrot: Point,
@@ -172,8 +179,6 @@ pub struct Field {
     /// Cells up to this cost are being settled.
     limit: u16,
     row: u8,
-    /// Something was settled since the first row.
-    busy: bool,
     /// The last field's answer.
     guide: Option<Point>,
     shunned: Vec<Shunned, SHUNNED>,
@@ -192,12 +197,12 @@ impl Field {
             cost: [FREE; CELLS],
             way: [u16::MAX; CELLS],
             active: [0; SIDE],
+            least: [u16::MAX; SIDE],
             corner: Point::new(Metres::ZERO, Metres::ZERO),
             carrot: Point::new(Metres::ZERO, Metres::ZERO),
             phase: Phase::Idle,
             limit: 0,
             row: 0,
-            busy: false,
             guide: None,
             shunned: Vec::new(),
         }
@@ -237,6 +242,14 @@ impl Field {
     /// The point to head for, world; none before the first field is ready.
     pub fn guide(&self) -> Option<Point> {
         self.guide
+    }
+
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for (cost, way) in self.cost.iter().zip(&self.way) {
+            digest.word(u32::from(*cost) << 16 | u32::from(*way));
+        }
+        digest.point(self.guide.unwrap_or_default());
+        digest.word(self.shunned.len() as u32);
     }
 
     /// A slice of work. Returns whether a field was finished.
@@ -279,12 +292,12 @@ impl Field {
         self.cost = [FREE; CELLS];
         self.way = [u16::MAX; CELLS];
         self.active = [0; SIDE];
+        self.least = [u16::MAX; SIDE];
         let half = Steps::from_bits(CELL.bits().wrapping_mul(SIDE as i32 / 2)).metres();
         self.corner = robot - Point::new(half, half);
         self.carrot = carrot;
         self.limit = u16::MAX;
         self.row = 0;
-        self.busy = false;
     }
 
     /// Column and row of a place of the world; they may lie outside.
@@ -316,23 +329,32 @@ impl Field {
 
     fn stamp_point(&mut self, costs: &Costs, world: Point) {
         let place = Vector::of(world - self.corner);
-        let (column, row) = self.cell_of(world);
-        let cells = costs.cells;
-        for r in row.wrapping_sub(cells)..=row.wrapping_add(cells) {
-            for c in column.wrapping_sub(cells)..=column.wrapping_add(cells) {
-                let Some(index) = index(c, r) else {
-                    continue;
-                };
-                let square = (Self::middle(c, r) - place).norm_squared() >> SQUARES;
-                let dear = costs
-                    .by_square
-                    .get(square as usize)
-                    .copied()
-                    .unwrap_or(FREE);
-                if let Some(cost) = self.cost.get_mut(index) {
-                    *cost = (*cost).max(dear);
+        let (column, row) = cell_of(place);
+        let last = SIDE as i32 - 1;
+        let last = last as u32;
+        let within = |i: i32| {
+            let [first, end] = [i.wrapping_sub(costs.cells), i.wrapping_add(costs.cells)];
+            (first.max(0) as u32, end.min(last as i32))
+        };
+        let ((left, right), (bottom, top)) = (within(column), within(row));
+        let corner = Self::middle(left as i32, bottom as i32) - place;
+        let (mut beside, mut r) = (corner.y, bottom);
+        while r as i32 <= top {
+            let across = beside.squared();
+            let (mut along, mut c) = (corner.x, left);
+            while c as i32 <= right {
+                let square = along.squared().wrapping_add(across) >> SQUARES;
+                if let Some(dear) = costs.by_square.get(square as usize) {
+                    let cost = &mut self.cost[cell(c as usize, r as usize)];
+                    if *cost < *dear {
+                        *cost = *dear;
+                    }
                 }
+                along = along + CELL;
+                c = c.wrapping_add(1);
             }
+            beside = beside + CELL;
+            r = r.wrapping_add(1);
         }
     }
 
@@ -363,6 +385,9 @@ impl Field {
     fn seed(&mut self, first: u16, budget: &mut i32) {
         const BORDER: u16 = 4 * (SIDE as u16 - 1);
         let mut next = first;
+        let off = self.carrot - self.corner;
+        // 2^16 a metre to sixteenths of a cell: by 614.4.
+        let carrot = (off.x.bits() / 614, off.y.bits() / 614);
         while *budget > 0 && next <= BORDER {
             let last = SIDE as i32 - 1;
             let along = i32::from(next) % last;
@@ -373,7 +398,7 @@ impl Field {
                 3 => (0, last.wrapping_sub(along)),
                 _ => self.cell_of(self.carrot),
             };
-            self.start(column, row);
+            self.start(column, row, carrot);
             next = next.wrapping_add(1);
             *budget = budget.wrapping_sub(1);
         }
@@ -384,27 +409,23 @@ impl Field {
         };
     }
 
-    fn start(&mut self, column: i32, row: i32) {
+    fn start(&mut self, column: i32, row: i32, carrot: (i32, i32)) {
         let Some(index) = index(column, row) else {
             return;
         };
-        let middle = self.corner + Self::middle(column, row).point();
-        let straight = (self.carrot - middle).norm();
-        // 2^16 a metre to sixteenths of a cell: by 614.4.
-        let way = (straight.bits() / 614).clamp(0, 40_000) as u16;
-        self.improve(index, way);
-        self.limit = self.limit.min(way);
-    }
-
-    fn improve(&mut self, index: usize, way: u16) {
-        if let Some(known) = self.way.get_mut(index)
-            && way < *known
-        {
-            *known = way;
-            if let Some(row) = self.active.get_mut(index / SIDE) {
-                *row |= 1u32.wrapping_shl((index % SIDE) as u32);
-            }
+        // In sixteenths of a cell, as costs are.
+        let off = |cell: i32, carrot: i32| {
+            let middle = cell.wrapping_mul(16).wrapping_add(8);
+            carrot.wrapping_sub(middle).unsigned_abs().min(1 << 15)
+        };
+        let (x, y) = (off(column, carrot.0), off(row, carrot.1));
+        let squared = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y));
+        let way = square_root_of_word(squared).min(40_000) as u16;
+        if way < self.way[index & (CELLS - 1)] {
+            self.way[index & (CELLS - 1)] = way;
+            self.wait(row as usize, 1u32.wrapping_shl(column as u32), way);
         }
+        self.limit = self.limit.min(way);
     }
 
     /// Settles cells, cheapest first. Returns whether the robot's cell is settled.
@@ -413,49 +434,136 @@ impl Field {
         let middle = SIDE / 2 * SIDE + SIDE / 2;
         let goal = index(column, row).unwrap_or(middle);
         while *budget > 0 {
-            let row = usize::from(self.row);
-            let mut waiting = self.active.get(row).copied().unwrap_or(0);
-            // At most once a cell of the row.
-            while waiting != 0 {
-                let column = waiting.trailing_zeros() as usize;
-                waiting &= waiting.wrapping_sub(1);
-                let from = row.wrapping_mul(SIDE).wrapping_add(column);
-                let way = self.way.get(from).copied().unwrap_or(u16::MAX);
-                if way <= self.limit {
-                    if let Some(row) = self.active.get_mut(row) {
-                        *row &= !1u32.wrapping_shl(column as u32);
-                    }
-                    self.relax(column as i32, row as i32, way);
-                    self.busy = true;
-                    *budget = budget.wrapping_sub(1);
-                }
+            let row = usize::from(self.row) & (SIDE - 1);
+            if self.least[row] <= self.limit {
+                self.settle(row, budget);
             }
             self.row = self.row.wrapping_add(1);
             if usize::from(self.row) < SIDE {
                 continue;
             }
-            // Once round costs as much as half a cell.
-            *budget = budget.wrapping_sub(1);
+            // Once round costs as much as three cells.
+            *budget = budget.wrapping_sub(3);
             self.row = 0;
-            if core::mem::replace(&mut self.busy, false) {
+            let next = self.least.iter().copied().min().unwrap_or(u16::MAX);
+            if next <= self.limit {
                 continue;
             }
-            let settled = self.way.get(goal).copied().unwrap_or(0) <= self.limit;
-            if settled || self.limit == u16::MAX {
+            if self.way[goal & (CELLS - 1)] <= self.limit || next == u16::MAX {
                 return true;
             }
-            self.limit = self.limit.saturating_add(STRAIGHT);
+            self.limit = next.saturating_add(BUCKET);
         }
         false
     }
 
-    /// Offers the neighbours the way over a cell.
-    fn relax(&mut self, column: i32, row: i32, way: u16) {
-        let here = self.cost_at(column, row);
-        for (c, r, diagonal) in NEIGHBOURS {
-            if let Some(next) = index(column.wrapping_add(c), row.wrapping_add(r)) {
-                let there = self.cost.get(next).copied().unwrap_or(FREE);
-                self.improve(next, way.saturating_add(step_cost(here, there, diagonal)));
+    /// Settles the cells of a row that are cheap enough.
+    fn settle(&mut self, row: usize, budget: &mut i32) {
+        let mut waiting = core::mem::replace(&mut self.active[row & (SIDE - 1)], 0);
+        self.least[row & (SIDE - 1)] = u16::MAX;
+        let (mut later, mut least) = (0u32, u16::MAX);
+        // At most once a cell of the row.
+        while waiting != 0 {
+            let column = waiting.trailing_zeros() as usize & (SIDE - 1);
+            let bit = waiting & waiting.wrapping_neg();
+            waiting ^= bit;
+            let way = self.way[cell(column, row)];
+            if way <= self.limit {
+                self.relax(column, row, way, bit);
+                *budget = budget.wrapping_sub(1);
+            } else {
+                later |= bit;
+                least = least.min(way);
+            }
+        }
+        self.wait(row, later, least);
+    }
+
+    /// Notes that cells of a row wait, none of which costs less than `least`.
+    #[inline(always)]
+    fn wait(&mut self, row: usize, cells: u32, least: u16) {
+        let row = row & (SIDE - 1);
+        if cells != 0 {
+            self.active[row] |= cells;
+            if least < self.least[row] {
+                self.least[row] = least;
+            }
+        }
+    }
+
+    /// Offers the neighbours the way over a cell. Most of a field's work is done here: inside the border neighbours are
+    /// spelled out, and the cell's own share of what they cost is worked out once. `bit` is its column's.
+    fn relax(&mut self, column: usize, row: usize, way: u16, bit: u32) {
+        let from = cell(column, row);
+        let here = u32::from(self.cost[from]);
+        let straight = u32::from(way).wrapping_add(here.wrapping_mul(2));
+        let least = straight.wrapping_add(u32::from(FREE) * 2).min(65_535) as u16;
+        let first = from.wrapping_sub(SIDE + 1);
+        let inside = column.wrapping_sub(1) < SIDE - 2 && row.wrapping_sub(1) < SIDE - 2;
+        let (Some(costs), Some(ways), true) = (
+            self.cost
+                .get(first..)
+                .and_then(<[u8]>::first_chunk::<AROUND>),
+            self.way
+                .get_mut(first..)
+                .and_then(<[u16]>::first_chunk_mut::<AROUND>),
+            inside,
+        ) else {
+            self.relax_at_border(column, row, way, least);
+            return;
+        };
+        let own = (
+            u32::from(way),
+            straight,
+            here.wrapping_mul(45).wrapping_add(8),
+        );
+        let mut below = 0;
+        let mut beside = 0;
+        let mut above = 0;
+        if slant::<0>(costs, ways, own) {
+            below |= bit >> 1;
+        }
+        if straight_on::<1>(costs, ways, own) {
+            below |= bit;
+        }
+        if slant::<2>(costs, ways, own) {
+            below |= bit << 1;
+        }
+        if straight_on::<SIDE>(costs, ways, own) {
+            beside |= bit >> 1;
+        }
+        if straight_on::<{ SIDE + 2 }>(costs, ways, own) {
+            beside |= bit << 1;
+        }
+        if slant::<{ 2 * SIDE }>(costs, ways, own) {
+            above |= bit >> 1;
+        }
+        if straight_on::<{ 2 * SIDE + 1 }>(costs, ways, own) {
+            above |= bit;
+        }
+        if slant::<{ 2 * SIDE + 2 }>(costs, ways, own) {
+            above |= bit << 1;
+        }
+        self.wait(row.wrapping_sub(1), below, least);
+        self.wait(row, beside, least);
+        self.wait(row.wrapping_add(1), above, least);
+    }
+
+    fn relax_at_border(&mut self, column: usize, row: usize, way: u16, least: u16) {
+        let here = self.cost[cell(column, row)];
+        for (c, r, diagonal) in &NEIGHBOURS {
+            let (column, row) = (
+                column.wrapping_add_signed(*c as isize),
+                row.wrapping_add_signed(*r as isize),
+            );
+            if column >= SIDE || row >= SIDE {
+                continue;
+            }
+            let to = cell(column, row);
+            let offered = way.saturating_add(step_cost(here, self.cost[to], *diagonal));
+            if offered < self.way[to] {
+                self.way[to] = offered;
+                self.wait(row, 1u32.wrapping_shl(column as u32), least);
             }
         }
     }
@@ -475,8 +583,9 @@ impl Field {
         for _ in 0..14 {
             let here = self.cost_at(column, row);
             let mut best = None::<(u16, i32, i32, bool)>;
-            for (c, r, diagonal) in NEIGHBOURS {
-                let (c, r) = (column.wrapping_add(c), row.wrapping_add(r));
+            for (c, r, diagonal) in &NEIGHBOURS {
+                let (c, r) = (column.wrapping_add(*c), row.wrapping_add(*r));
+                let diagonal = *diagonal;
                 let Some(next) = index(c, r) else {
                     continue;
                 };
@@ -519,8 +628,46 @@ fn cell_of(place: Vector) -> (i32, i32) {
     (cell(place.x), cell(place.y))
 }
 
+/// Cells from a cell's first neighbour to its last, in a row.
+const AROUND: usize = 2 * SIDE + 3;
+
+/// The way to the cell being settled, that with its share of a straight step, and its share of one across a corner.
+type Own = (u32, u32, u32);
+
+/// Offers a neighbour beside the cell the way over it; whether it is better than the one known.
+#[inline(always)]
+fn straight_on<const I: usize>(
+    costs: &[u8; AROUND],
+    ways: &mut [u16; AROUND],
+    (_, straight, _): Own,
+) -> bool {
+    let offered = straight.wrapping_add(u32::from(costs[I]).wrapping_mul(2));
+    let better = offered < u32::from(ways[I]);
+    if better {
+        // It is less than what fits.
+        ways[I] = offered as u16;
+    }
+    better
+}
+
+/// The same across a corner: [`step_cost`], worked out in part.
+#[inline(always)]
+fn slant<const I: usize>(
+    costs: &[u8; AROUND],
+    ways: &mut [u16; AROUND],
+    (way, _, aslant): Own,
+) -> bool {
+    let step = u32::from(costs[I]).wrapping_mul(45).wrapping_add(aslant) >> 4;
+    let offered = way.wrapping_add(step);
+    let better = offered < u32::from(ways[I]);
+    if better {
+        ways[I] = offered as u16;
+    }
+    better
+}
+
 /// Column, row, diagonal.
-const NEIGHBOURS: [(i32, i32, bool); 8] = [
+static NEIGHBOURS: [(i32, i32, bool); 8] = [
     (1, 0, false),
     (0, 1, false),
     (-1, 0, false),
@@ -540,6 +687,11 @@ fn step_cost(here: u8, there: u8, diagonal: bool) -> u16 {
     } else {
         sum.wrapping_mul(2)
     }
+}
+
+/// A cell of the grid by its column and row: always one.
+const fn cell(column: usize, row: usize) -> usize {
+    (row & (SIDE - 1)) << 5 | (column & (SIDE - 1))
 }
 
 fn index(column: i32, row: i32) -> Option<usize> {

@@ -222,6 +222,32 @@ impl Outline {
             Shape::Polygon(edges) => clearance_to(edges, point),
         }
     }
+
+    /// Whether a point lies inside the outline and deeper than this, which is 0 or more.
+    pub(super) fn covers(&self, point: Vector, deeper: Steps) -> bool {
+        match &self.shape {
+            Shape::Rectangle {
+                middle,
+                half_length,
+                half_width,
+            } => {
+                (point.x - *middle).abs() < *half_length - deeper
+                    && point.y.abs() < *half_width - deeper
+            }
+            Shape::Disc { radius } => {
+                let inner = *radius - deeper;
+                inner > Steps::ZERO && point.norm_squared() < inner.squared()
+            }
+            Shape::Polygon(edges) => is_inside(edges, point, deeper),
+        }
+    }
+}
+
+/// Whether a point lies deeper inside all edges.
+fn is_inside(edges: &[Edge], point: Vector, deeper: Steps) -> bool {
+    edges
+        .iter()
+        .all(|edge| (point - edge.from).in_frame(edge.along).y > deeper)
 }
 
 fn clearance_to(edges: &[Edge], point: Vector) -> Steps {
@@ -241,5 +267,44 @@ fn clearance_to(edges: &[Edge], point: Vector) -> Steps {
         root(nearest)
     } else {
         inside
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Footprint, Steps, Vector};
+    use crate::geometry::Point;
+    use crate::units::Metres;
+
+    #[test]
+    fn what_is_covered_is_deeper_than_its_clearance() {
+        let m = |text| Metres::lit(text);
+        let triangle = [("0.4", "0"), ("-0.2", "0.3"), ("-0.2", "-0.3")];
+        let shapes = [
+            Footprint::Rectangle {
+                front: m("0.3"),
+                rear: m("0.2"),
+                half_width: m("0.215"),
+            },
+            Footprint::Disc { radius: m("0.25") },
+            Footprint::Polygon(
+                triangle
+                    .iter()
+                    .map(|(x, y)| Point::new(m(x), m(y)))
+                    .collect(),
+            ),
+        ];
+        for outline in shapes.map(|shape| shape.outline()) {
+            for deep in [0, 123] {
+                for x in (-2000..2000).step_by(37) {
+                    for y in (-2000..2000).step_by(41) {
+                        let place = Vector::new(Steps::from_bits(x), Steps::from_bits(y));
+                        let deep = Steps::from_bits(deep);
+                        let exact = outline.clearance(place) < -deep;
+                        assert_eq!(outline.covers(place, deep), exact, "{x}, {y}, {deep:?}");
+                    }
+                }
+            }
+        }
     }
 }

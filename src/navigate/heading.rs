@@ -105,21 +105,37 @@ pub fn choose(
         4096u32.saturating_sub(free.wrapping_mul(reciprocal >> 8) >> 12)
     };
     let admissible = |sector: usize| map.hard(sector) >= least && map.can_turn(middle(sector));
-    let cost = |sector: usize| {
+    let turning = |sector: usize| {
         let angle = middle(sector);
-        let [left, right] = [sector.wrapping_add(1), sector.wrapping_sub(1)];
-        let beside = taken(map.soft(left)).wrapping_add(taken(map.soft(right)));
         Weights::angle(weights.toward, angle - wanted.direction)
             .wrapping_add(Weights::angle(weights.ahead, angle))
             .wrapping_add(Weights::angle(weights.commitment, angle - wanted.last))
-            .wrapping_add(taken(map.soft(sector)).wrapping_mul(weights.soft) >> 12)
+    };
+    let tightness = |sector: usize| {
+        let [left, right] = [sector.wrapping_add(1), sector.wrapping_sub(1)];
+        let beside = taken(map.soft(left)).wrapping_add(taken(map.soft(right)));
+        (taken(map.soft(sector)).wrapping_mul(weights.soft) >> 12)
             .wrapping_add(taken(map.hard(sector)).wrapping_mul(weights.hard) >> 12)
             .wrapping_add(beside.wrapping_mul(weights.neighbours) >> 12)
     };
-    let (sector, _) = (0..SECTORS)
-        .filter(|sector| admissible(*sector))
-        .map(|sector| (sector, cost(sector)))
-        .min_by_key(|(_, cost)| *cost)?;
+    let cost = |sector: usize| turning(sector).wrapping_add(tightness(sector));
+    let mut best = None::<(usize, u32)>;
+    for sector in 0..SECTORS {
+        // What the turn alone costs rules most sectors out.
+        let dearer = |known: u32| best.is_some_and(|(_, least)| known >= least);
+        if !admissible(sector) {
+            continue;
+        }
+        let turn = turning(sector);
+        if dearer(turn) {
+            continue;
+        }
+        let cost = turn.wrapping_add(tightness(sector));
+        if !dearer(cost) {
+            best = Some((sector, cost));
+        }
+    }
+    let (sector, _) = best?;
     Some(Heading {
         angle: refined(sector, wanted.direction, admissible, cost),
         hard: map.hard(sector),

@@ -10,8 +10,8 @@ use crate::units::{Angle, Metres, MetresPerSecond};
 /// When a sensor counts as dead, and what follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HealthParams {
-    /// Both neighbours' echoes must be nearer than this for silence to be doubtful; as long as the sensor has never been
-    /// heard, any echoes of theirs do.
+    /// Both neighbours' echoes must be nearer than this for silence to be doubtful. As long as the sensor has never been
+    /// heard, any echoes of both do, or one of half this.
     pub near: Metres,
     /// Doubtful ticks after which it is dead; 1 to 255. A tick that is not doubtful takes one back, an echo of its own all.
     pub doubts: u8,
@@ -62,12 +62,13 @@ impl<const N: usize> Health<N> {
             .zip(self.doubts.iter_mut().zip(echoes))
         {
             let bit = 1u32 << bit;
-            let near = if self.proven & bit == 0 {
-                Steps::MAX
+            let [right, left] = [index.wrapping_sub(1), index.wrapping_add(1)];
+            let both = |near| hears(right, near) && hears(left, near);
+            let doubtful = if self.proven & bit == 0 {
+                both(Steps::MAX) || hears(right, near.half()) || hears(left, near.half())
             } else {
-                near
+                both(near)
             };
-            let doubtful = hears(index.wrapping_sub(1), near) && hears(index.wrapping_add(1), near);
             if echo.range().is_some() {
                 *doubts = 0;
                 self.proven |= bit;

@@ -6,9 +6,11 @@
 //! arc is carved away and the right part stays. A silent sensor neither disproves nor supports: if it is dead, nothing is
 //! lost.
 //!
-//! Cost: one pass over the points, each in the view of three sensors (of all, if they do not share a place), and at most
-//! five new points a sensor.
+//! Cost: one pass over the points, each in the view of one to three sensors (of all, if they do not share a place), and at
+//! most five new points a sensor. When the memory is full a new point takes the place of one that is farther away, of
+//! eight that are looked at.
 
+use super::digest::Digest;
 use super::footprint::Outline;
 use super::sensors::{Echo, Echoes, Eye, Eyes, View};
 use super::steps::{Bearing, Steps, Vector, retain};
@@ -18,8 +20,8 @@ use crate::units::{Angle, Metres, MetresPerSecond};
 use fixed::types::I16F16;
 use heapless::Vec;
 
-/// The most points.
-pub const CAPACITY: usize = 208;
+/// The most points; a power of two.
+pub const CAPACITY: usize = 128;
 
 /// The memory's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +67,8 @@ pub struct Memory {
     records: Vec<Record, CAPACITY>,
     origin: Point,
     tick: u32,
+    /// The point that was last looked at for its place.
+    looked: usize,
     /// Of the last update: the body in the frame of the points.
     body: Vector,
     forward: Bearing,
@@ -83,6 +87,7 @@ impl Memory {
             records: Vec::new(),
             origin: Point::new(Metres::ZERO, Metres::ZERO),
             tick: 0,
+            looked: 0,
             body: Vector::new(Steps::ZERO, Steps::ZERO),
             forward: Bearing::AHEAD,
         }
@@ -116,6 +121,16 @@ impl Memory {
     /// A place seen from the rolling origin in the world.
     pub(super) fn to_world(&self, local: Vector) -> Point {
         self.origin + local.point()
+    }
+
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for record in &self.records {
+            digest.pair(record.x, record.y);
+            digest.pair(record.seen.into(), record.confidence.into());
+        }
+        digest.point(self.origin);
+        digest.word(self.tick);
+        digest.word(self.looked as u32);
     }
 
     fn to_body(&self, record: &Record) -> Vector {
@@ -163,8 +178,11 @@ impl Memory {
         let (body, forward) = (self.body, self.forward);
         retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
-            let seen = |eye: &Eye| eye.view(place - eye.at) != View::Outside;
-            outline.clearance(place) < NEAR && !eyes.as_slice().iter().any(seen)
+            let sees = |index: usize| {
+                let eye = eyes.as_slice().get(index);
+                eye.is_some_and(|eye| eye.view(place - eye.at) != View::Outside)
+            };
+            outline.clearance(place) < NEAR && !eyes.around(place).any(sees)
         });
     }
 
@@ -196,12 +214,14 @@ impl Memory {
         echoes: &Echoes<N>,
     ) -> u32 {
         /// Deeper than this inside the robot a point is wrong: there the robot stands.
-        const DEEP: Steps = Steps::lit("-0.03");
+        const DEEP: Steps = Steps::lit("0.03");
         let keep = Steps::of(params.keep).squared();
+        let reach = outline.reach.squared();
         let [disproof, support] = [params.disproof, params.support].map(Steps::of);
         /// What a range's noise may be.
         const NOISE: Steps = Steps::lit("0.01");
         let nearer = Steps::of(params.nearer);
+        let alone = eyes.disjoint();
         let snap = params.snap;
         let lifetime = (params.lifetime >> UNIT) as u8;
         let now = (self.tick >> UNIT) as u8;
@@ -209,9 +229,10 @@ impl Memory {
         let mut explained = 0u32;
         retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
-            if place.norm_squared() > keep
+            let away = place.norm_squared();
+            if away > keep
                 || now.wrapping_sub(record.seen) > lifetime
-                || outline.clearance(place) < DEEP
+                || (away < reach && outline.covers(place, DEEP))
             {
                 return false;
             }
@@ -221,31 +242,33 @@ impl Memory {
                 else {
                     continue;
                 };
-                let Some(range) = echo.range() else {
-                    continue;
-                };
                 let from_eye = place - eye.at;
                 let view = eye.view(from_eye);
                 if view == View::Outside {
                     continue;
                 }
-                let distance = from_eye.norm_squared();
-                let below = |limit: Steps| limit > Steps::ZERO && distance < limit.squared();
-                if view == View::Sure && below(range - disproof) {
-                    record.confidence = record.confidence.saturating_sub(1);
-                    if record.confidence == 0 {
-                        return false;
+                if let Some(range) = echo.range() {
+                    let distance = from_eye.norm_squared();
+                    let below = |limit: Steps| limit > Steps::ZERO && distance < limit.squared();
+                    if view == View::Sure && below(range - disproof) {
+                        record.confidence = record.confidence.saturating_sub(1);
+                        if record.confidence == 0 {
+                            return false;
+                        }
+                    } else if below(range + support) && !below(range - support) {
+                        record.confidence = SURE;
+                        record.seen = now;
+                        if below(range + nearer) {
+                            explained |= 1u32.wrapping_shl(index as u32);
+                        }
+                        if snap && !below(range + NOISE) {
+                            let place = eye.at + drawn(from_eye, range);
+                            record.move_to(body + place.turned(forward));
+                        }
                     }
-                } else if below(range + support) && !below(range - support) {
-                    record.confidence = SURE;
-                    record.seen = now;
-                    if below(range + nearer) {
-                        explained |= 1u32.wrapping_shl(index as u32);
-                    }
-                    if snap && !below(range + NOISE) {
-                        let place = eye.at + drawn(from_eye, range);
-                        record.move_to(body + place.turned(forward));
-                    }
+                }
+                if alone {
+                    break;
                 }
             }
             true
@@ -286,12 +309,24 @@ impl Memory {
             return;
         };
         if self.records.push(record).is_err() {
-            // Full: the farthest gives way.
-            let body = self.body;
-            let away = |record: &Record| (record.at() - body).norm_squared();
-            if let Some(farthest) = self.records.iter_mut().max_by_key(|r| away(r)) {
-                *farthest = record;
+            self.replace(record);
+        }
+    }
+
+    /// Puts a point in the place of one that is farther away: the farthest of a few, which are others the next time.
+    fn replace(&mut self, record: Record) {
+        const LOOKED: usize = 8;
+        let away = |record: &Record| (record.at() - self.body).norm_squared();
+        let mut farthest = (away(&record), None);
+        for _ in 0..LOOKED {
+            self.looked = self.looked.wrapping_add(1) & (CAPACITY - 1);
+            let known = self.records.get(self.looked).map_or(0, away);
+            if known > farthest.0 {
+                farthest = (known, Some(self.looked));
             }
+        }
+        if let Some(place) = farthest.1.and_then(|index| self.records.get_mut(index)) {
+            *place = record;
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What stands near the robot in the frame of the predicted body: the list that the geometry of a tick works on.
 
+use super::digest::Digest;
 use super::footprint::Outline;
 use super::steps::{Bearing, Steps, Vector};
 use crate::geometry::{Point, Pose};
@@ -83,6 +84,13 @@ impl Near {
         }
     }
 
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for spot in &self.spots {
+            digest.pair(spot.x, spot.y);
+            digest.word(spot.clearance().bits().cast_unsigned());
+        }
+    }
+
     pub(super) fn spots(&self) -> &[Spot] {
         &self.spots
     }
@@ -90,6 +98,35 @@ impl Near {
     /// Distance of the nearest point from the outline; 8 m if there is none.
     pub fn clearance(&self) -> Steps {
         self.least
+    }
+
+    /// Which of up to 32 places a point is nearer to than `reach`: a bit each, the first one the lowest.
+    pub(super) fn touching(&self, places: &[Vector], reach: Steps) -> u32 {
+        let mut touched = 0;
+        let Some(first) = places.first() else {
+            return touched;
+        };
+        // A box around them all: most points lie outside.
+        let (mut least, mut most) = (*first, *first);
+        for place in places {
+            least = Vector::new(least.x.min(place.x), least.y.min(place.y));
+            most = Vector::new(most.x.max(place.x), most.y.max(place.y));
+        }
+        let margin = Vector::new(reach, reach);
+        let (least, most) = (least - margin, most + margin);
+        let squared = reach.squared();
+        for spot in &self.spots {
+            let at = spot.at();
+            if at.x <= least.x || at.x >= most.x || at.y <= least.y || at.y >= most.y {
+                continue;
+            }
+            for (bit, place) in (0..32u32).zip(places) {
+                if (at - *place).norm_squared() < squared {
+                    touched |= 1u32.wrapping_shl(bit);
+                }
+            }
+        }
+        touched
     }
 
     /// How far a straight corridor of this half width is free from the middle of the body, in a direction: to the first

@@ -7,6 +7,7 @@
 //!
 //! Cost: a point touches only the sectors in whose corridor it lies, found outward from its own direction.
 
+use super::digest::Digest;
 use super::footprint::Outline;
 use super::near::{Near, Spot};
 use super::steps::{Bearing, Steps, Vector};
@@ -50,15 +51,6 @@ pub(super) fn middle(sector: usize) -> Angle {
     Angle::from_bits(((sector & 63) as i32).wrapping_shl(SECTOR_BITS))
 }
 
-/// The sector that an angle lies in: sector 0 is straight ahead.
-pub(super) fn sector_of(angle: Angle) -> usize {
-    (angle
-        .bits()
-        .wrapping_add(1 << (SECTOR_BITS - 1))
-        .cast_unsigned()
-        >> SECTOR_BITS) as usize
-}
-
 impl Default for PolarMap {
     fn default() -> Self {
         Self::new()
@@ -86,6 +78,14 @@ impl PolarMap {
         Steps::from_bits(self.soft.get(sector & 63).copied().unwrap_or(0).into())
     }
 
+    pub(super) fn digest(&self, digest: &mut Digest) {
+        for (hard, soft) in self.hard.iter().zip(&self.soft) {
+            digest.pair(*hard, *soft);
+        }
+        digest.word(self.left.bits().cast_unsigned());
+        digest.word(self.right.bits().cast_unsigned());
+    }
+
     /// Whether the robot can turn in place by an angle.
     pub fn can_turn(&self, angle: Angle) -> bool {
         let room = if angle.is_left() {
@@ -103,65 +103,66 @@ impl PolarMap {
         self.soft = [look; SECTORS];
         let widths = Widths {
             front: outline.front,
-            flank: outline.half_width,
+            graze: outline.half_width - const { Steps::lit("0.02") },
             hard: outline.half_width + Steps::of(params.hard),
             soft: outline.half_width + Steps::of(params.soft.max(params.hard)),
         };
         for spot in near.spots() {
-            let at = spot.at();
-            let own = sector_of(at.direction());
-            // A quarter turn and the own sector's other half to either side are enough.
-            for step in 0..=16 {
-                if !self.mark(own.wrapping_add(step), at, &widths) {
-                    break;
-                }
-            }
-            for step in 1..=16 {
-                if !self.mark(own.wrapping_sub(step), at, &widths) {
-                    break;
-                }
-            }
+            let own = spot.at().half_sector().wrapping_add(1) >> 1;
+            self.mark(own as usize, spot.at(), &widths);
         }
         let margin = Steps::of(params.turning);
         self.left = room(near, outline, margin, true);
         self.right = room(near, outline, margin, false);
     }
 
-    /// Enters a point into a sector; whether it lies in its corridor at all.
-    fn mark(&mut self, sector: usize, at: Vector, widths: &Widths) -> bool {
-        let sector = sector & 63;
-        let (Some(bearing), Some(hard), Some(soft)) = (
-            MIDDLES.get(sector),
-            self.hard.get_mut(sector),
-            self.soft.get_mut(sector),
-        ) else {
-            return false;
-        };
-        let place = at.in_frame(*bearing);
-        let beside = place.y.abs();
-        if place.x < Steps::ZERO || beside >= widths.soft {
-            return false;
-        }
+    /// Enters a point into the sectors in whose corridors it lies, from its own outward: to the left, then to the right.
+    fn mark(&mut self, own: usize, at: Vector, widths: &Widths) {
         /// A point this far behind the front line is beside the robot, no more before it.
         const PASSED: Steps = Steps::lit("-0.12");
-        /// Flanks that touch no more than this slide along.
-        const GRAZE: Steps = Steps::lit("0.02");
-        let ahead = place.x - widths.front;
-        let beside_flank = ahead < Steps::ZERO && beside > widths.flank - GRAZE;
-        let free = ahead.bits().max(0) as i16;
-        if beside < widths.hard && ahead > PASSED && !beside_flank {
-            *hard = (*hard).min(free);
+        /// A quarter turn and the own sector's other half to either side are enough.
+        const FARTHEST: usize = 16;
+        let mut sector = own;
+        let mut step = 1usize;
+        let mut last = own.wrapping_add(FARTHEST);
+        loop {
+            let place = at.in_frame(MIDDLES[sector & (SECTORS - 1)]);
+            let beside = place.y.abs();
+            if place.x < Steps::ZERO || beside >= widths.soft || sector == last {
+                if step != 1 {
+                    break;
+                }
+                step = usize::MAX;
+                sector = own.wrapping_sub(1);
+                last = own.wrapping_sub(FARTHEST + 1);
+                continue;
+            }
+            let slot = sector & (SECTORS - 1);
+            sector = sector.wrapping_add(step);
+            let ahead = place.x - widths.front;
+            if ahead > Steps::ZERO {
+                let free = ahead.bits() as i16;
+                if free < self.soft[slot] {
+                    self.soft[slot] = free;
+                }
+                if beside < widths.hard && free < self.hard[slot] {
+                    self.hard[slot] = free;
+                }
+            } else if ahead > PASSED
+                && (beside <= widths.graze || ahead == Steps::ZERO)
+                && beside < widths.hard
+            {
+                self.soft[slot] = 0;
+                self.hard[slot] = 0;
+            }
         }
-        if ahead > Steps::ZERO || (beside < widths.hard && ahead > PASSED && !beside_flank) {
-            *soft = (*soft).min(free);
-        }
-        true
     }
 }
 
 struct Widths {
     front: Steps,
-    flank: Steps,
+    /// Flanks that touch no more than this slide along.
+    graze: Steps,
     hard: Steps,
     soft: Steps,
 }

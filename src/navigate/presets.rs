@@ -88,7 +88,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             s!("0.2"),
         ),
         health: HealthParams {
-            near: m!("2"),
+            near: m!("2.5"),
             doubts: 80,
             unproven: 72,
             ahead: const { Angle::deg("30") },
@@ -119,7 +119,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
             shun: 12,
-            budget: 400,
+            budget: 150,
         },
         heading: HeadingParams {
             least: m!("0.08"),

@@ -199,6 +199,8 @@ pub struct Eyes<const N: usize> {
     eyes: Vec<Eye, N>,
     /// They all sit in one place: a place's direction tells whose cone it is in.
     shared: bool,
+    /// And their cones do not overlap.
+    disjoint: bool,
     /// Then: the sensor whose axis is nearest to the middle of each 64th of a turn.
     nearest: [u8; 64],
     max_range: Steps,
@@ -214,6 +216,18 @@ impl<const N: usize> Eyes<N> {
         }
         let first = eyes.first().map_or(Vector::default(), |eye| eye.at);
         let shared = eyes.iter().all(|eye| eye.at == first);
+        // A thousandth of a turn is noise.
+        let apart = |a: &Eye, b: &Eye| {
+            let half = |eye: &Eye| eye.width.bits() >> 1;
+            let between = (a.heading - b.heading).abs().bits();
+            between >= half(a).saturating_add(half(b)).saturating_sub(1 << 22)
+        };
+        let pairs = eyes.iter().enumerate();
+        let disjoint = shared
+            && pairs.clone().all(|(i, a)| {
+                let others = eyes.iter().skip(i.wrapping_add(1));
+                others.into_iter().all(|b| apart(a, b))
+            });
         let mut nearest = [0; 64];
         for (sector, entry) in (0..64i32).zip(&mut nearest) {
             let middle = Angle::from_bits((sector << 26).wrapping_add(1 << 25));
@@ -224,6 +238,7 @@ impl<const N: usize> Eyes<N> {
         Self {
             eyes,
             shared,
+            disjoint,
             nearest,
             max_range: Steps::of(set.max_range),
             max_age: set.max_age,
@@ -234,15 +249,28 @@ impl<const N: usize> Eyes<N> {
         &self.eyes
     }
 
-    /// The sensors in whose cone a place, body frame, may be: three where they share a place, else all.
-    pub(super) fn around(&self, place: Vector) -> core::ops::Range<usize> {
-        let Some(eye) = self.eyes.first().filter(|_| self.shared) else {
-            return 0..self.eyes.len();
+    /// The sensors in whose cone a place, body frame, may be, the likeliest first: three where they share a place, else all.
+    pub(super) fn around(&self, place: Vector) -> impl Iterator<Item = usize> {
+        let (count, first) = match self.eyes.first().filter(|_| self.shared) {
+            Some(eye) => {
+                let sector = (place - eye.at).half_sector() >> 1;
+                (3, self.nearest.get(sector as usize).copied().unwrap_or(0))
+            }
+            None => (self.eyes.len(), 0),
         };
-        let direction = (place - eye.at).direction();
-        let sector = (direction.bits().cast_unsigned() >> 26) as usize;
-        let nearest = usize::from(self.nearest.get(sector).copied().unwrap_or(0));
-        nearest.saturating_sub(1)..nearest.saturating_add(2).min(self.eyes.len())
+        let first = usize::from(first);
+        let shared = self.shared;
+        // Beside the first one: to the right, to the left. Before the first there is none: the index is too large.
+        (0..count).map(move |i| match i {
+            1 if shared => first.wrapping_sub(1),
+            2 if shared => first.wrapping_add(1),
+            _ => first.wrapping_add(i),
+        })
+    }
+
+    /// Whether a place is in the cone of one sensor at most, its edges apart.
+    pub(super) fn disjoint(&self) -> bool {
+        self.disjoint
     }
 }
 

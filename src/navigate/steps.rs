@@ -5,7 +5,7 @@
 //! panic.
 
 use crate::geometry::Point;
-use crate::integer::square_root;
+use crate::integer::square_root_of_word;
 use crate::units::{Angle, Metres};
 use core::ops::{Add, Neg, Sub};
 
@@ -140,6 +140,30 @@ impl Vector {
         Angle::of(self.x.0, self.y.0)
     }
 
+    /// The 128th of a turn that the direction lies in, counted from straight ahead counter-clockwise; at a boundary the one
+    /// before or after. Four comparisons, where the angle itself takes two divisions.
+    pub fn half_sector(self) -> u32 {
+        let (x, y) = (self.x.0.unsigned_abs(), self.y.0.unsigned_abs());
+        let steep = y > x;
+        let (most, least) = if steep { (y, x) } else { (x, y) };
+        let least = least.wrapping_shl(TANGENT_BITS);
+        let mut octant = 0;
+        for step in [8, 4, 2, 1] {
+            let tangent = TANGENTS.get(octant | step).copied().unwrap_or(u16::MAX);
+            if least >= most.wrapping_mul(tangent.into()) {
+                octant |= step;
+            }
+        }
+        let octant = octant as u32;
+        let quadrant = if steep { octant ^ 31 } else { octant };
+        let half = if self.x.0 < 0 {
+            quadrant ^ 63
+        } else {
+            quadrant
+        };
+        if self.y.0 < 0 { half ^ 127 } else { half }
+    }
+
     /// Turned counter-clockwise.
     pub const fn turned(self, turn: Bearing) -> Self {
         let (x, y) = (self.x.0, self.y.0);
@@ -174,6 +198,15 @@ impl Sub for Vector {
         Self::new(self.x - other.x, self.y - other.y)
     }
 }
+
+/// Fractional bits of [`TANGENTS`]: a product with ±16 m fits 32 bits.
+const TANGENT_BITS: u32 = 15;
+
+/// Tangents of 0 to 15 times 1/128 of a turn, 15 fractional bits.
+static TANGENTS: [u16; 16] = [
+    0, 1610, 3227, 4861, 6518, 8208, 9940, 11725, 13573, 15498, 17515, 19640, 21895, 24302, 26892,
+    29699,
+];
 
 /// A direction as cosine and sine with 14 fractional bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -226,8 +259,7 @@ impl Bearing {
 
 /// Root of a square, rounded down.
 pub(super) fn root(square: u32) -> Steps {
-    // The upper half of a 64-bit root's argument would be empty: scaled, its rest is what is needed.
-    Steps(square_root(u64::from(square)) as i32)
+    Steps(square_root_of_word(square) as i32)
 }
 
 /// Keeps what `keep` says, in order. The list's own `retain` counts with checks that stay in an image as panics.
@@ -248,4 +280,27 @@ pub(super) fn retain<T: Copy, const N: usize>(
         }
     }
     list.truncate(kept);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Steps, Vector};
+
+    #[test]
+    fn a_half_sector_is_the_directions() {
+        for x in (-40_000..=40_000).step_by(1237) {
+            for y in (-40_000..=40_000).step_by(1171) {
+                let place = Vector::new(Steps::from_bits(x), Steps::from_bits(y));
+                let direction = place.direction().bits().cast_unsigned();
+                let exact = direction >> 25;
+                let found = place.half_sector();
+                // A tangent's rounding: 2^-15 beside the boundary.
+                let beside = direction.wrapping_add(1 << 15) & ((1 << 25) - 1);
+                assert!(
+                    found == exact || beside < 1 << 16,
+                    "{x}, {y}: {found}, not {exact}"
+                );
+            }
+        }
+    }
 }

@@ -200,7 +200,9 @@ impl State {
             self.trail = Trail::NONE;
         }
         let forget = self.watch(params, now);
-        let next = if now.at_goal {
+        // Who brakes past the goal has still arrived.
+        let stays = self.manoeuvre == Manoeuvre::Arrived && now.to_go < params.progress;
+        let next = if now.at_goal || stays {
             Manoeuvre::Arrived
         } else if forget || self.since_least >= params.give_up {
             Manoeuvre::Blocked

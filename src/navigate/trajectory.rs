@@ -21,7 +21,9 @@ const ARC_STEPS: usize = 40;
 /// A pose of the body, in its frame of the beginning.
 #[derive(Clone, Copy, Debug)]
 struct Placed {
-    at: Vector,
+    // Steps, which saturate where sixteen bits end.
+    x: i16,
+    y: i16,
     turn: Bearing,
 }
 
@@ -64,21 +66,23 @@ impl Trajectory {
     /// `length` metres along an arc, forward or backward, in steps of [`Trajectory::STEP`].
     pub fn arc(curvature: PerMetre, backward: bool, length: Steps) -> Self {
         let mut trajectory = Self::new();
+        trajectory.bend(curvature, backward, length);
+        trajectory
+    }
+
+    /// Becomes an [arc](Self::arc). In place: a copy of all poses costs as much as ten of them.
+    pub(super) fn bend(&mut self, curvature: PerMetre, backward: bool, length: Steps) {
+        self.clear();
         let step = if backward { -Self::STEP } else { Self::STEP };
         let turn = Angle::from_radians(curvature.get().saturating_mul(
             fixed::types::I16F16::from_bits(step.bits().wrapping_mul(16)),
         ));
         for _ in 0..ARC_STEPS {
-            if Self::STEP
-                .bits()
-                .wrapping_mul(trajectory.poses.len() as i32)
-                >= length.bits()
-            {
+            if Self::STEP.bits().wrapping_mul(self.poses.len() as i32) >= length.bits() {
                 break;
             }
-            trajectory.go(step.metres(), turn);
+            self.go(step.metres(), turn);
         }
-        trajectory
     }
 
     /// A period in which the twist goes from `driven` to `twist`, then both parts braked to rest, two steps a period: in a
@@ -86,6 +90,21 @@ impl Trajectory {
     /// come to rest after [`MAX_STEPS`] ends there.
     pub fn braked(driven: Twist, twist: Twist, brakes: Brakes) -> Self {
         let mut trajectory = Self::new();
+        trajectory.brake(driven, twist, brakes);
+        trajectory
+    }
+
+    fn clear(&mut self) {
+        self.poses.clear();
+        self.at = Point::new(Metres::ZERO, Metres::ZERO);
+        self.heading = Angle::ZERO;
+        self.advance = Steps::ZERO;
+        self.turn = Angle::ZERO;
+    }
+
+    /// Becomes the way of a [braked](Self::braked) twist, in place.
+    pub(super) fn brake(&mut self, driven: Twist, twist: Twist, brakes: Brakes) {
+        self.clear();
         let (mut before, mut now) = (driven, twist);
         for _ in 0..MAX_STEPS / 2 {
             let mean = brakes.mean(before, now);
@@ -94,11 +113,10 @@ impl Trajectory {
             }
             let half = Seconds::from_bits(brakes.period.bits() >> 1);
             let (way, turn) = (mean.linear.over(half), mean.angular.over(half));
-            trajectory.go(way, turn);
-            trajectory.go(way, turn);
+            self.go(way, turn);
+            self.go(way, turn);
             (before, now) = (now, brakes.applied(now));
         }
-        trajectory
     }
 
     fn go(&mut self, way: Metres, turn: Angle) {
@@ -110,8 +128,10 @@ impl Trajectory {
             self.turn = turn.abs();
         }
         // The callers' loops end before it is full.
+        let at = Vector::of(self.at);
         let _ = self.poses.push(Placed {
-            at: Vector::of(self.at),
+            x: at.x.bits() as i16,
+            y: at.y.bits() as i16,
             turn: Bearing::of(self.heading),
         });
     }
@@ -141,15 +161,22 @@ impl Trajectory {
         let skipped = |room: Steps| room.bits().max(0).checked_div(pace).unwrap_or(0) as usize;
         let mut first = None::<Contact>;
         let mut end = self.poses.len();
+        // Farther away than this it is not reached: most points are.
+        let reach = pace.wrapping_mul(end as i32);
         for spot in near.spots() {
             let mut before = spot.clearance();
+            if (before - margin).bits() >= reach {
+                continue;
+            }
             let mut step = skipped(before - margin);
             let mut adjacent = step == 0;
             while step < end {
                 let Some(pose) = self.poses.get(step) else {
                     break;
                 };
-                let here = outline.clearance((spot.at() - pose.at).in_frame(pose.turn));
+                let [x, y] = [pose.x, pose.y].map(|steps| Steps::from_bits(steps.into()));
+                let place = spot.at() - Vector::new(x, y);
+                let here = outline.clearance(place.in_frame(pose.turn));
                 if here < margin && here < before {
                     let room = (before - margin).bits().max(0) << 8;
                     let part = room.checked_div((before - here).bits()).unwrap_or(0);
@@ -213,6 +240,17 @@ impl Brakes {
     pub fn mean(&self, from: Twist, to: Twist) -> Twist {
         let mean = |from: i32, to: i32, most: i32| {
             let change = to.saturating_sub(from).min(most).max(most.saturating_neg());
+            // The usual cases, without a division: it stays, or changes all that it can.
+            let half = most >> 1;
+            if change == 0 {
+                return to;
+            }
+            if change == most {
+                return to.saturating_sub(half);
+            }
+            if change == most.saturating_neg() {
+                return to.saturating_add(half);
+            }
             to.saturating_sub(ratio(change, change.saturating_abs() >> 1, most))
         };
         Twist {

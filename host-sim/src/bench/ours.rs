@@ -5,7 +5,7 @@ use crate::recording::BeamView;
 use crate::run::segment;
 use crate::si;
 use fuzzypilot::geometry::{Point, Pose};
-use fuzzypilot::guide::StoredPath;
+use fuzzypilot::guide::{StoredPath, Waypoint};
 use fuzzypilot::navigate::{
     Manoeuvre, Navigator as Engine, NavigatorParams, RangeSet, Setup, Task, presets,
 };
@@ -156,7 +156,7 @@ fn sensors(views: &[BeamView], like: &RangeSet<SENSORS>) -> (RangeSet<SENSORS>, 
     (set, beams)
 }
 
-/// The route as it is, of lines and arcs, or a planner's with evenly spaced points, rounded, and its tangents.
+/// The route as it is, of lines and arcs, or a planner's as [`waypoints`].
 fn path(mission: &Mission) -> Box<StoredPath<PIECES, POINTS>> {
     let mut path = Box::new(StoredPath::new());
     if (1..=PIECES).contains(&mission.pieces.len()) {
@@ -167,9 +167,18 @@ fn path(mission: &Mission) -> Box<StoredPath<PIECES, POINTS>> {
         path.commit(false).expect("the pieces follow each other");
         return path;
     }
-    let route = &mission.route;
+    path.begin_points(false);
+    for point in waypoints(&mission.route, POINTS) {
+        path.push_point(point).expect("there is room");
+    }
+    path.commit(false).expect("the route has a length");
+    path
+}
+
+/// The route with evenly spaced points, `most` at most, rounded, and its tangents.
+pub fn waypoints(route: &[[f64; 2]], most: usize) -> Vec<Waypoint> {
     let length: f64 = route.windows(2).map(|leg| distance(leg[0], leg[1])).sum();
-    let count = ((length / SPACING).ceil() as usize).clamp(1, POINTS - 1);
+    let count = ((length / SPACING).ceil() as usize).clamp(1, most - 1);
     let mut points = spaced(route, length / count as f64, count);
     for _ in 0..ROUNDING {
         let before = points.clone();
@@ -177,17 +186,15 @@ fn path(mission: &Mission) -> Box<StoredPath<PIECES, POINTS>> {
             *point = [0, 1].map(|k| 0.25 * around[0][k] + 0.5 * around[1][k] + 0.25 * around[2][k]);
         }
     }
-    path.begin_points(false);
     let last = points.len() - 1;
-    for i in 0..=last {
-        let (from, to) = (points[i.saturating_sub(1)], points[(i + 1).min(last)]);
-        let heading = libm::atan2(to[1] - from[1], to[0] - from[0]);
-        let [x, y] = points[i];
-        path.push_point(si::pose([x, y, heading]))
-            .expect("there is room");
-    }
-    path.commit(false).expect("the route has a length");
-    path
+    (0..=last)
+        .map(|i| {
+            let (from, to) = (points[i.saturating_sub(1)], points[(i + 1).min(last)]);
+            let heading = libm::atan2(to[1] - from[1], to[0] - from[0]);
+            let [x, y] = points[i];
+            si::pose([x, y, heading])
+        })
+        .collect()
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -113,7 +113,7 @@ pub fn count(machine: &Machine, images: &Images, runs: &Counted) -> anyhow::Resu
 }
 
 /// Instructions, the cost of counting taken off.
-fn calibrated(machine: &Machine, words: &[u32]) -> anyhow::Result<Vec<u32>> {
+pub(crate) fn calibrated(machine: &Machine, words: &[u32]) -> anyhow::Result<Vec<u32>> {
     let [empty, thousand, counts @ ..] = words else {
         anyhow::bail!("{}: nothing was counted", machine.name);
     };
@@ -129,14 +129,20 @@ fn calibrated(machine: &Machine, words: &[u32]) -> anyhow::Result<Vec<u32>> {
     Ok(counts.iter().map(net).collect())
 }
 
-fn ticks(tapes: &[Tape]) -> impl Iterator<Item = (&Tape, usize)> {
+pub(crate) fn ticks<const BYTES: usize>(
+    tapes: &[Tape<BYTES>],
+) -> impl Iterator<Item = (&Tape<BYTES>, usize)> {
     tapes
         .iter()
         .flat_map(|tape| (0..tape.ticks()).map(move |tick| (tape, tick)))
 }
 
 /// The counts of every tick, `each` a tick.
-fn by_tick<'w>(tapes: &[Tape], words: &'w [u32], each: usize) -> anyhow::Result<Vec<&'w [u32]>> {
+pub(crate) fn by_tick<'w, const BYTES: usize>(
+    tapes: &[Tape<BYTES>],
+    words: &'w [u32],
+    each: usize,
+) -> anyhow::Result<Vec<&'w [u32]>> {
     let expected: usize = tapes.iter().map(Tape::ticks).sum();
     ensure!(
         words.len() == expected * each,

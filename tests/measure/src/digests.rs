@@ -16,16 +16,20 @@ const HEAD: &str = "\
 # `cargo test` and `cargo bit-exact` check it. If a change of behaviour is meant, `cargo bit-exact --write` renews it.
 ";
 
-#[derive(Debug, PartialEq, Eq, Deserialize)]
+/// What some runs compute.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
-    ticks: usize,
-    sha256: String,
+pub struct Entry {
+    /// All of them.
+    pub ticks: usize,
+    /// Over their records in a row.
+    pub sha256: String,
 }
 
 type Entries = BTreeMap<String, Entry>;
 
-fn entry<'t>(tapes: impl IntoIterator<Item = &'t Tape>) -> Entry {
+/// The digest of tapes in a row.
+pub fn entry<'t, const BYTES: usize>(tapes: impl IntoIterator<Item = &'t Tape<BYTES>>) -> Entry {
     let (mut ticks, mut digest) = (0, Sha256::new());
     for tape in tapes {
         ticks += tape.ticks();

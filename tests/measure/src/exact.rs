@@ -1,6 +1,6 @@
 //! Byte by byte: the records of every machine against the desktop's.
 
-use crate::machine::{Images, MACHINES, Machine, Time};
+use crate::machine::{Images, MACHINES, Time};
 use crate::tape::{Tape, file};
 use fuzzypilot::link::record::{RECORD_BYTES, decode};
 use replica::tape::Mode;
@@ -54,13 +54,35 @@ impl fmt::Display for Comparison {
     }
 }
 
+/// The first field in which two records of a kind differ, and both values.
+pub type Parting<const BYTES: usize> = fn(&[u8; BYTES], &[u8; BYTES]) -> String;
+
 /// Plays the tapes on every machine and compares.
 pub fn compare_all(images: &Images, tapes: &[Tape]) -> anyhow::Result<Vec<Comparison>> {
+    compare_records(images, "replica", tapes, 0, parting)
+}
+
+/// Plays tapes on an image of every machine, leaves out the first `before` bytes of what it writes, and compares.
+pub fn compare_records<const BYTES: usize>(
+    images: &Images,
+    image: &str,
+    tapes: &[Tape<BYTES>],
+    before: usize,
+    parting: Parting<BYTES>,
+) -> anyhow::Result<Vec<Comparison>> {
     let bytes = file(Mode::Records, tapes);
     std::thread::scope(|scope| {
         let runs = MACHINES.each_ref().map(|machine| {
             let bytes = &bytes;
-            scope.spawn(move || compare_one(machine, images, tapes, bytes))
+            scope.spawn(move || {
+                let folder = tempfile::tempdir()?;
+                let image = images.of(machine, image);
+                let outcome = machine.run(&image, folder.path(), bytes, Time::Free)?;
+                let out = outcome.out.get(before..).unwrap_or_default();
+                let mut comparison = compare_with(tapes, out, parting);
+                comparison.failure = outcome.failure;
+                Ok(comparison)
+            })
         });
         runs.into_iter()
             .map(|run| {
@@ -71,37 +93,25 @@ pub fn compare_all(images: &Images, tapes: &[Tape]) -> anyhow::Result<Vec<Compar
     })
 }
 
-fn compare_one(
-    machine: &Machine,
-    images: &Images,
-    tapes: &[Tape],
-    bytes: &[u8],
-) -> anyhow::Result<Comparison> {
-    let folder = tempfile::tempdir()?;
-    let image = images.of(machine, "replica");
-    let outcome = machine.run(&image, folder.path(), bytes, Time::Free)?;
-    let mut comparison = compare(tapes, &outcome.out);
-    comparison.failure = outcome.failure;
-    Ok(comparison)
-}
-
 /// Compares what an image wrote with the tapes' records.
 pub fn compare(tapes: &[Tape], out: &[u8]) -> Comparison {
-    let (found, rest) = out.as_chunks::<RECORD_BYTES>();
+    compare_with(tapes, out, parting)
+}
+
+fn compare_with<const BYTES: usize>(
+    tapes: &[Tape<BYTES>],
+    out: &[u8],
+    parting: Parting<BYTES>,
+) -> Comparison {
+    let (found, rest) = out.as_chunks::<BYTES>();
     let mut found = found.iter();
     let mut comparison = Comparison::default();
     for tape in tapes {
-        for (tick, expected) in tape
-            .records
-            .as_chunks::<RECORD_BYTES>()
-            .0
-            .iter()
-            .enumerate()
-        {
+        for (tick, expected) in tape.records.as_chunks::<BYTES>().0.iter().enumerate() {
             let found = found.next();
             let differing = match found {
                 Some(found) => expected.iter().zip(found).filter(|(a, b)| a != b).count(),
-                None => RECORD_BYTES,
+                None => BYTES,
             };
             comparison.ticks += usize::from(found.is_some());
             comparison.differing += differing;
@@ -117,7 +127,7 @@ pub fn compare(tapes: &[Tape], out: &[u8]) -> Comparison {
             }
         }
     }
-    comparison.differing += rest.len() + found.len() * RECORD_BYTES;
+    comparison.differing += rest.len() + found.len() * BYTES;
     comparison
 }
 

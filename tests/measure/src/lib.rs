@@ -13,6 +13,7 @@ pub mod engine;
 pub mod exact;
 pub mod footprint;
 pub mod machine;
+pub mod navigation;
 pub mod page;
 pub mod slack;
 pub mod suite;

@@ -214,6 +214,15 @@ pub struct Images {
 impl Images {
     /// Builds them for every machine as the firmware is built.
     pub fn build() -> anyhow::Result<Self> {
+        Self::build_with(&[])
+    }
+
+    /// Builds one of them only.
+    pub fn build_one(name: &str) -> anyhow::Result<Self> {
+        Self::build_with(&["--bin", name])
+    }
+
+    fn build_with(choice: &[&str]) -> anyhow::Result<Self> {
         // Beside this program: `target/release/…` leads to `target/replica`.
         let here = std::env::current_exe()?;
         let folder = here
@@ -225,6 +234,7 @@ impl Images {
         for machine in &MACHINES {
             let status = images
                 .command(machine)
+                .args(choice)
                 .status()
                 .context("cargo cannot be started")?;
             let name = machine.name;

@@ -1,4 +1,4 @@
-//! `cargo bit-exact`, `cargo budgets`, `cargo engine` and `cargo systems`.
+//! `cargo bit-exact`, `cargo budgets`, `cargo engine`, `cargo systems` and `cargo navigation`.
 
 use anyhow::{Context, bail, ensure};
 use clap::{Args, Parser, Subcommand};
@@ -6,7 +6,7 @@ use comfy_table::{Table, presets::NOTHING};
 use measure::budgets::{Budgets, Measured, readme};
 use measure::counts::{COUNTED, count};
 use measure::machine::{Images, MACHINES, Missing};
-use measure::{clock, digests, engine, exact, footprint, suite, systems};
+use measure::{clock, digests, engine, exact, footprint, navigation, suite, systems};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -30,6 +30,9 @@ enum Command {
     /// Count one evaluation of the fine controller over a grid, and compare results, tests/engine.toml and docs/engine.md;
     /// tell how far it is off fuzzylite, or off f64.
     Engine(Write),
+    /// Drive the navigator through generated worlds, compare every tick's record on emulated microcontrollers byte by byte,
+    /// count them there, and compare digests and counts with tests/navigation.toml and docs/bench.md.
+    Navigation(Write),
 }
 
 #[derive(Args)]
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         Command::Budgets(arguments) => budgets(arguments.write),
         Command::Systems(arguments) => systems::run(arguments.write),
         Command::Engine(arguments) => engine::run(arguments.write),
+        Command::Navigation(arguments) => navigation::run(arguments.write),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -14,31 +14,34 @@ use host_sim::scenario::Scenario;
 use host_sim::si;
 use replica::tape::{self, Inputs, Mode, NoWheels, Pieces, Sink, Source, Store};
 
-/// One run: its inputs, and the desktop's records.
+/// One run: its inputs, and the desktop's records of so many bytes each.
 #[derive(Clone, Debug)]
-pub struct Tape {
+pub struct Tape<const BYTES: usize = RECORD_BYTES> {
     /// What was run.
     pub name: String,
     /// Its bytes on tape.
     pub bytes: Vec<u8>,
-    /// The records' canonical bytes, [`RECORD_BYTES`] a tick.
+    /// The records' canonical bytes, `BYTES` a tick.
     pub records: Vec<u8>,
 }
 
-impl Tape {
+impl<const BYTES: usize> Tape<BYTES> {
     /// Number of ticks.
     pub fn ticks(&self) -> usize {
-        self.records.len() / RECORD_BYTES
+        self.records.len() / BYTES
     }
 
     /// The record of a tick.
-    pub fn record(&self, tick: usize) -> Option<&[u8; RECORD_BYTES]> {
+    pub fn record(&self, tick: usize) -> Option<&[u8; BYTES]> {
         self.records.as_chunks().0.get(tick)
     }
 }
 
 /// A file of tapes.
-pub fn file<'a>(mode: Mode, tapes: impl IntoIterator<Item = &'a Tape>) -> Vec<u8> {
+pub fn file<'a, const BYTES: usize>(
+    mode: Mode,
+    tapes: impl IntoIterator<Item = &'a Tape<BYTES>>,
+) -> Vec<u8> {
     let mut bytes = Bytes::default();
     tape::begin(&mut bytes, mode);
     for tape in tapes {
@@ -168,8 +171,9 @@ pub fn play(bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
     Ok(records)
 }
 
+/// A tape being written.
 #[derive(Debug, Default)]
-struct Bytes(Vec<u8>);
+pub(crate) struct Bytes(pub Vec<u8>);
 
 impl Sink for Bytes {
     fn put(&mut self, bytes: &[u8]) {
@@ -177,7 +181,8 @@ impl Sink for Bytes {
     }
 }
 
-struct Cursor<'a>(&'a [u8]);
+/// A tape being read.
+pub(crate) struct Cursor<'a>(pub &'a [u8]);
 
 impl Source for Cursor<'_> {
     fn byte(&mut self) -> u8 {

@@ -1,6 +1,7 @@
 //! A clock that goes on by a fixed step with every instruction while the emulator runs with `-icount`: SysTick on
 //! Cortex-M, the cycle counter on RISC-V.
 
+use fuzzypilot::navigate;
 use fuzzypilot::tick::{Probe, Stage};
 
 #[cfg(target_arch = "arm")]
@@ -136,4 +137,57 @@ pub fn empty_stage() -> u32 {
     clock.mark(Stage::Read);
     clock.mark(Stage::Sense);
     clock.counts[1]
+}
+
+/// Stages of a navigator's tick.
+const PARTS: usize = 8;
+
+/// Counts every stage of one tick of a navigator.
+pub struct Marks {
+    last: u32,
+    /// By stage.
+    pub counts: [u32; PARTS],
+}
+
+impl Default for Marks {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Marks {
+    /// Before the tick.
+    pub fn new() -> Self {
+        Self {
+            last: 0,
+            counts: [0; PARTS],
+        }
+    }
+
+    /// The tick begins now.
+    #[inline(never)]
+    pub fn begin(&mut self) {
+        self.last = now();
+    }
+}
+
+impl navigate::Probe for Marks {
+    #[inline(never)]
+    fn mark(&mut self, stage: navigate::Stage) {
+        let count = since(self.last);
+        if let Some(place) = self.counts.get_mut(stage as usize) {
+            *place = count;
+        }
+        self.last = now();
+    }
+}
+
+/// The count of an empty stage of a navigator's tick.
+#[inline(never)]
+pub fn empty_mark() -> u32 {
+    let mut marks = Marks::new();
+    marks.begin();
+    navigate::Probe::mark(&mut marks, navigate::Stage::Remember);
+    navigate::Probe::mark(&mut marks, navigate::Stage::Near);
+    marks.counts[1]
 }

@@ -4,7 +4,7 @@ use crate::tape::Source;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
-const BLOCK: usize = 1024;
+const BLOCK: usize = 256;
 
 /// The tapes.
 pub struct Input {

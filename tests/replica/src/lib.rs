@@ -5,6 +5,7 @@
 //! playing a tape in open loop *is* the closed loop that was recorded: the plant would have answered the same.
 
 pub mod fine;
+pub mod navigation;
 pub mod shapes;
 pub mod systems;
 pub mod tape;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! file     "FPTP", word FORM, word mode (0 records, 1 ticks, 2 stages, 3 stack), tape…, word 0
+//!          (the navigator's tapes have a form of their own: `navigation`)
 //! tape     word ticks (above 0), word sensors, settings, start pose, path, tick…
 //! settings word count, then of each: word id, word raw value (`fuzzypilot::link::settings`, mounts too)
 //! pose     words x, y, heading
@@ -123,6 +124,21 @@ pub trait Source {
         Pose::new(self.point(), self.angle())
     }
 
+    /// A sensor's reading.
+    fn reading(&mut self) -> RangeReading {
+        let tag = self.byte();
+        let range = match tag & 127 {
+            0 => Range::Clear,
+            1 => Range::Echo(self.metres()),
+            fault => Range::Invalid(fault_of(fault.wrapping_sub(2))),
+        };
+        let age = match tag & 128 {
+            0 => Seconds::ZERO,
+            _ => Seconds::from_bits(self.word()),
+        };
+        RangeReading { range, age }
+    }
+
     /// A segment.
     fn segment(&mut self) -> Segment {
         if self.word() == 0 {
@@ -225,20 +241,25 @@ pub fn tick(to: &mut impl Sink, counts: Result<WheelCounts, Fault>, readings: &[
         }
         Err(fault) => to.put(&[1 + fault_tag(fault)]),
     }
-    for reading in readings {
-        let aged = reading.age != Seconds::ZERO;
-        let age = if aged { 128 } else { 0 };
-        match reading.range {
-            Range::Clear => to.put(&[age]),
-            Range::Echo(distance) => {
-                to.put(&[1 | age]);
-                to.word(distance.bits());
-            }
-            Range::Invalid(fault) => to.put(&[(2 + fault_tag(fault)) | age]),
+    for one in readings {
+        reading(to, one);
+    }
+}
+
+/// Writes a sensor's reading.
+pub fn reading(to: &mut impl Sink, reading: &RangeReading) {
+    let aged = reading.age != Seconds::ZERO;
+    let age = if aged { 128 } else { 0 };
+    match reading.range {
+        Range::Clear => to.put(&[age]),
+        Range::Echo(distance) => {
+            to.put(&[1 | age]);
+            to.word(distance.bits());
         }
-        if aged {
-            to.word(reading.age.bits());
-        }
+        Range::Invalid(fault) => to.put(&[(2 + fault_tag(fault)) | age]),
+    }
+    if aged {
+        to.word(reading.age.bits());
     }
 }
 
@@ -311,17 +332,7 @@ impl Inputs {
             tag => Err(fault_of(tag.wrapping_sub(1))),
         };
         for reading in self.readings.iter_mut().take(sensors) {
-            let tag = from.byte();
-            let range = match tag & 127 {
-                0 => Range::Clear,
-                1 => Range::Echo(from.metres()),
-                fault => Range::Invalid(fault_of(fault.wrapping_sub(2))),
-            };
-            let age = match tag & 128 {
-                0 => Seconds::ZERO,
-                _ => Seconds::from_bits(from.word()),
-            };
-            *reading = RangeReading { range, age };
+            *reading = from.reading();
         }
     }
 }

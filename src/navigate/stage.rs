@@ -1,0 +1,33 @@
+//! The parts of a navigator's tick, for who watches one: to count what each costs.
+
+/// A part of the tick, for a [`Probe`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Echoes into the memory.
+    Remember,
+    /// The points near the predicted body.
+    Near,
+    /// The polar map.
+    Map,
+    /// Where to head: the path, or a slice of the guide field.
+    Course,
+    /// The choice of the heading.
+    Heading,
+    /// The higher level's decision.
+    Supervise,
+    /// The manoeuvre's twist.
+    Behave,
+    /// Barrier and brake gate.
+    Guard,
+}
+
+/// Watches a tick from inside.
+pub trait Probe {
+    /// `stage` is done.
+    fn mark(&mut self, stage: Stage);
+}
+
+/// Watches nothing and costs nothing.
+impl Probe for () {
+    fn mark(&mut self, _: Stage) {}
+}
