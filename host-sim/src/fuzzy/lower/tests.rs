@@ -102,14 +102,15 @@ fn fixed_point_agrees_with_f64() {
         "{}",
         within(&straight, 0.99)
     );
-    // Curves are cut into pieces: the worst are linear conclusions many times as large as the output's range.
+    // Curves are cut into pieces, and some are only some steps wide or less: the worst are linear conclusions many times as
+    // large as the output's range.
     assert!(
         (1e-5..5e-2).contains(&within(&curved, 1.0)),
         "{}",
         within(&curved, 1.0)
     );
     assert!(
-        (1e-6..1e-3).contains(&within(&curved, 0.99)),
+        (1e-6..2e-3).contains(&within(&curved, 0.99)),
         "{}",
         within(&curved, 0.99)
     );
