@@ -243,6 +243,40 @@ fn random_systems_agree_with_fuzzylite() {
     }
 }
 
+/// A curve on a part of 3e-6 to 5e-5 of its input's range, beside a weak rule that holds everywhere: what the curve is off in
+/// fixed point, the output is off, and nothing else is.
+fn steep(rng: &mut impl Rng) -> System {
+    let range = 10.0_f64.powf(rng.random_range(0.0..6.0));
+    let (at, width) = (
+        range * rng.random_range(0.1..0.9),
+        range * 10.0_f64.powf(rng.random_range(-5.5..-4.3)),
+    );
+    let curve = match rng.random_range(0..5) {
+        0 => format!("SShape {at} {}", at + width),
+        1 => format!("ZShape {at} {}", at + width),
+        2 => format!("Gaussian {at} {width}"),
+        3 => format!("Bell {at} {width} {}", rng.random_range(0.7..5.0)),
+        _ => format!("Sigmoid {at} {}", 1.0 / width),
+    };
+    let text = format!(
+        "Engine: steep\nInputVariable: x\n  range: 0 {range}\n  term: curve {curve}\n  term: all Ramp -2 -1\n\
+         OutputVariable: y\n  range: 0 100\n  defuzzifier: WeightedAverage\n  term: p Constant 0\n  term: q Constant 100\n\
+         RuleBlock: r\n  activation: General\n  rule: if x is curve then y is q\n  rule: if x is all then y is p with 0.05\n"
+    );
+    parse("steep.fll", text.as_bytes(), Format::Fll).unwrap()
+}
+
+#[test]
+fn steep_curves_agree_with_fuzzylite() {
+    let mut rng = Pcg64Mcg::seed_from_u64(40);
+    let mut systems: Vec<System> = (0..40).map(|_| steep(&mut rng)).collect();
+    if let Some(seen) = agree(&mut systems, &mut rng) {
+        assert!(seen.fixed > 100 * systems.len(), "{seen:?}");
+        // Near enough to see a bound that is too low.
+        assert!(seen.used > 0.3, "{seen:?}");
+    }
+}
+
 #[test]
 fn the_checked_in_designs_agree_with_fuzzylite() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/designs");
