@@ -102,10 +102,10 @@ fn fixed_point_agrees_with_f64() {
         "{}",
         within(&straight, 0.99)
     );
-    // Curves are cut into pieces, and some are only some steps wide or less: the worst are linear conclusions many times as
-    // large as the output's range.
+    // Curves are cut into pieces, and the worst are linear conclusions many times as large as the output's range, or curves
+    // narrower than a step, which are a step wide in fixed point.
     assert!(
-        (1e-5..5e-2).contains(&within(&curved, 1.0)),
+        (1e-5..2e-1).contains(&within(&curved, 1.0)),
         "{}",
         within(&curved, 1.0)
     );
