@@ -6,8 +6,10 @@ use fixed::types::I16F16;
 use fuzzypilot::fuzzy::{Activation, Partition};
 use fuzzypilot::tables::coarse::{self, SpeedInput};
 use fuzzypilot::tables::fine;
-use std::io::Read;
-use std::path::PathBuf;
+use std::path::Path;
+
+#[path = "oracle/grid.rs"]
+mod fuzzylite;
 
 const STEP_SPEED: f64 = 1.0 / 8192.0; // I3F13
 const STEP_DEGREES: f64 = 1.0 / 256.0; // I8F8
@@ -289,25 +291,13 @@ fn partitions_of_unity_and_monotone() {
 
 #[test]
 fn fuzzylite_grid() {
-    let root = std::env::var_os("FUZZYPILOT_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        PathBuf::from,
-    );
-    let file = root.join("oracle/fine-grid.csv.gz");
-    let Ok(packed) = std::fs::File::open(&file) else {
-        println!("skipped: {} is absent", file.display());
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let Some(grid) = fuzzylite::rows(data).unwrap() else {
+        println!("skipped: fuzzylite's grid is absent");
         return;
     };
-    let mut text = String::new();
-    flate2::read::GzDecoder::new(packed)
-        .read_to_string(&mut text)
-        .unwrap();
     let (mut worst_v, mut worst_d, mut rows) = (0.0f64, 0.0f64, 0);
-    for line in text.lines().skip(1) {
-        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
-        let &[d, phi, v, deflection] = cells.as_slice() else {
-            panic!("not four columns: {line}")
-        };
+    for [d, phi, v, deflection] in grid {
         let out = fine::PRINTED.evaluate(fx(d), fx(phi));
         worst_v = worst_v.max((out.speed.to_num::<f64>() - v).abs());
         worst_d = worst_d.max((out.deflection.to_num::<f64>() - deflection).abs());

@@ -1,6 +1,9 @@
 //! `host-sim fuzzy check` can be trusted: what it does not see it does not call good, and what it cuts it writes elsewhere.
 
 use assert_cmd::Command;
+use host_sim::fuzzy::evaluate::{Evaluator, Exact};
+use host_sim::fuzzy::files::load;
+use host_sim::fuzzy::lower::lower;
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
@@ -328,4 +331,211 @@ fn what_the_lists_cut_is_in_the_file() {
     assert_eq!(terms[32]["line"], 45);
     assert_eq!(all["search"], "exact");
     assert_eq!(all["gaps"][0]["example"]["x"], 5.0);
+}
+
+/// A flank of 0.6 on a range of 10,000, beside a weak rule that holds everywhere.
+const STEEP: &str = "\
+Engine: steep
+InputVariable: x
+  range: 0 10000
+  term: low ZShape 3006.6 3007.2
+  term: all Trapezoid -1 0 10000 10001
+OutputVariable: y
+  range: 0 100
+  defuzzifier: WeightedAverage
+  term: p Constant 0
+  term: q Constant 100
+RuleBlock: r
+  activation: General
+  rule: if x is low then y is q
+  rule: if x is all then y is p with 0.05
+";
+
+#[test]
+fn nowhere_above_holds_on_a_flank_between_the_points_of_the_grid() {
+    for (text, from, to) in [
+        (STEEP.to_owned(), 3006.6, 3007.2),
+        (
+            STEEP.replace("ZShape 3006.6 3007.2", "Bell 3006.9 0.05 3"),
+            3006.6,
+            3007.2,
+        ),
+    ] {
+        let dir = with(&text);
+        let (code, _, said) = run(&dir, &["check", "design.fll", "--json", "all.json"]);
+        assert_eq!(code, 0, "{said}");
+        let all = json(&dir, "all.json");
+        let bound = all["errors"][0]["classes"][3]["nowhere_above"]
+            .as_f64()
+            .unwrap();
+        let system = load(&dir.path().join("design.fll"), None).unwrap();
+        let (exact, fixed) = (Exact::new(&system), lower(&system).unwrap());
+        let worst = (0..=5000)
+            .map(|i| from + (to - from) * f64::from(i) / 5000.0)
+            .map(|x| [exact.evaluate(&[x]), fixed.evaluate(&[x])].map(|e| e.outputs[0].unwrap()))
+            .map(|[exact, fixed]| (exact - fixed).abs())
+            .fold(0.0, f64::max);
+        assert!(
+            0.1 * bound < worst && worst <= bound,
+            "{worst}, {bound}: {text}"
+        );
+    }
+}
+
+/// Rules that end in a strip of 0.2 beside a gap: no even grid has a point where they are weak.
+const HEATER: &str = "\
+Engine: heater
+InputVariable: t
+  range: 0 100
+  term: cold Ramp 20.7 20.5
+  term: hot Ramp 30.5 30.7
+InputVariable: h
+  range: 0 100
+  term: dry Ramp 40.4 40.2
+OutputVariable: y
+  range: 0 100
+  default: 50
+  defuzzifier: WeightedAverage
+  term: p Constant 0
+  term: q Constant 100
+RuleBlock: r
+  conjunction: Minimum
+  activation: General
+  rule: if t is cold and h is dry then y is p
+  rule: if t is hot then y is q
+";
+
+#[test]
+fn a_bound_is_told_where_no_point_of_the_grid_is() {
+    let dir = with(HEATER);
+    let args = ["check", "design.fll", "--json", "all.json"];
+    let (code, printed, _) = run(&dir, &args);
+    assert_eq!(code, 0);
+    let all = json(&dir, "all.json");
+    let classes = all["errors"][0]["classes"].as_array().unwrap();
+    assert_eq!(
+        classes[3]["points"], classes[2]["points"],
+        "or this tests nothing"
+    );
+    let bound = classes[3]["nowhere_above"].as_f64().unwrap();
+    assert!((50.0..50.01).contains(&bound), "{bound}");
+    let row = printed
+        .lines()
+        .find(|line| line.contains(" > 0 ┆"))
+        .expect(&printed);
+    assert!(row.contains("5.0e1") && row.contains("50 %"), "{row}");
+    let (code, _, said) = run(&dir, &[&args[..], &["--max-error", "1"]].concat());
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("y 50 % (> 0)"), "{said}");
+    let (code, ..) = run(&dir, &[&args[..], &["--max-error", "51"]].concat());
+    assert_eq!(code, 0);
+    // The default is what fixed point may take there, and is here what the rules say.
+    let near = HEATER
+        .replace("default: 50", "default: 0")
+        .replace("  rule: if t is hot then y is q\n", "");
+    let (code, _, said) = run(&with(&near), &["check", "design.fll", "--max-error", "1"]);
+    assert_eq!(code, 0, "{said}");
+}
+
+/// Rises to 1 and falls to 0.5, whatever the row of the second rule about `b` says.
+const HILL: &str = "\
+Engine: hill
+InputVariable: x
+  range: 0 2
+  term: a Triangle -1 0 1
+  term: b Triangle 0 1 2
+  term: c Triangle 1 2 3
+OutputVariable: y
+  range: 0 1
+  defuzzifier: WeightedAverage
+  term: o0 Constant 0
+  term: o4 Constant 0.4
+  term: o5 Constant 0.5
+  term: o1 Constant 1
+RuleBlock: r
+  activation: General
+  rule: if x is a then y is o0
+  rule: if x is b then y is o1
+  rule: if x is b then y is o4 with 0
+  rule: if x is c then y is o5
+";
+
+#[test]
+fn an_output_that_turns_is_not_called_monotone_by_its_table() {
+    let nested = "\
+Engine: nested
+InputVariable: x
+  range: 0 10
+  term: narrow Triangle 4.9 5 5.1
+  term: wide Triangle -10 5.05 20
+OutputVariable: y
+  range: 0 1
+  defuzzifier: WeightedAverage
+  term: zero Constant 0
+  term: one Constant 1
+RuleBlock: r
+  activation: General
+  rule: if x is narrow then y is zero
+  rule: if x is wide then y is one
+";
+    let check = ["check", "design.fll", "--deny", "non-monotone"];
+    for (text, parts) in [
+        // A rule without a weight says nothing.
+        (
+            HILL.to_owned(),
+            ["non-monotone cells: 1\n", "a 0 → b 1 → c 0.5"],
+        ),
+        // Two in a cell are neither of them.
+        (
+            HILL.replace(" with 0", ""),
+            [
+                "y: no table: rule 2 (line 17) and rule 3 (line 18) ask the same",
+                "sampled: 1\n",
+            ],
+        ),
+        // A term inside another one.
+        (
+            nested.to_owned(),
+            ["non-monotone cells: none\n", "sampled: 1\n"],
+        ),
+    ] {
+        let (code, printed, said) = run(&with(&text), &check);
+        assert_eq!(code, 1, "{printed}");
+        assert!(said.contains("non-monotone: found"), "{said}");
+        for part in parts {
+            assert!(printed.contains(part), "`{part}` not in {printed}");
+        }
+    }
+    let slope = HILL
+        .replace("  rule: if x is b then y is o4 with 0\n", "")
+        .replace("c then y is o5", "c then y is o1");
+    let (code, printed, _) = run(&with(&slope), &check);
+    assert_eq!(code, 0, "{printed}");
+}
+
+#[test]
+fn examples_are_not_rounded_out_of_what_they_are_examples_of() {
+    let text = "\
+Engine: edge
+InputVariable: x
+  range: 0 10
+  term: lo Trapezoid -1 0 4.999 5.0000003
+  term: hi Trapezoid 5.0000003 5.001 10 11
+OutputVariable: y
+  range: 0 100
+  default: 0
+  defuzzifier: WeightedAverage
+  term: p Constant 100
+RuleBlock: r
+  activation: General
+  rule: if x is lo then y is p
+  rule: if x is hi then y is p
+";
+    let dir = with(text);
+    let (_, printed, _) = run(&dir, &["check", "design.fll", "--json", "all.json"]);
+    assert!(printed.contains("┆ x = 5.0000003 "), "{printed}");
+    let all = json(&dir, "all.json");
+    assert_eq!(all["gaps"][0]["example"]["x"], 5.0000003);
+    let at = all["errors"][0]["classes"][3]["at"]["x"].as_f64().unwrap();
+    assert!(printed.contains(&format!("┆ x = {at} ")), "{printed}");
 }

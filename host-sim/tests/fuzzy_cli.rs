@@ -568,7 +568,7 @@ fn pictures_of_all_outputs_and_of_the_terms() {
     let dir = with(BOILER);
     done(dir.path(), &["surface", "design.fll"]);
     let svg = fs::read_to_string(dir.path().join("out/fuzzy/design-valve.svg")).unwrap();
-    assert!(svg.contains("no rule fires"));
+    assert!(svg.contains("no value"));
     let svg = fs::read_to_string(dir.path().join("out/fuzzy/design-memberships.svg")).unwrap();
     assert!(svg.contains("out of this range: extreme"));
 }
@@ -678,4 +678,104 @@ fn wrong_arguments_are_named_with_what_is_allowed() {
         &["check", "none.fll"],
         &["none.fll", "cannot be read"],
     );
+}
+
+/// Sets between the samples at 0.05, 0.15, …
+const MISSED: &str = "\
+Engine: missed
+InputVariable: x
+  range: 0 10
+  term: lo Ramp 10 0
+  term: hi Ramp 0 10
+OutputVariable: y
+  range: 0 10
+  default: nan
+  aggregation: Maximum
+  defuzzifier: Centroid 100
+  term: a Triangle 2.96 2.98 3.04
+  term: b Triangle 7.01 7.02 7.04
+RuleBlock: r
+  conjunction: Minimum
+  disjunction: Maximum
+  implication: Minimum
+  activation: General
+  rule: if x is lo then y is a
+  rule: if x is hi then y is b
+";
+
+#[test]
+fn a_value_that_no_rule_concludes_is_called_the_default() {
+    let eval = |text: &str, at: &[&str]| {
+        let said = done(
+            with(text).path(),
+            &[&["eval", "design.fll"][..], at].concat(),
+        );
+        rows(&said)
+            .into_iter()
+            .find(|row| row[0] == "y" || row[0] == "valve")
+            .unwrap()
+    };
+    let missed = MISSED.replace("default: nan", "default: 5");
+    assert_eq!(
+        eval(&missed, &["--input", "x=5"])[1],
+        "5, the default: the concluded sets meet no sample"
+    );
+    let silent = BOILER.replace("default: nan", "default: 5");
+    let nowhere = ["--input", "error=-9", "--input", "load=0.45"];
+    let row = eval(&silent, &nowhere);
+    assert_eq!(
+        row[1..3],
+        ["5, the default: no rule fires", "5, the default"]
+    );
+    // What rules conclude is no default, whatever its value.
+    let row = eval(&silent, &["--input", "error=0", "--input", "load=0.5"]);
+    assert!(
+        !row[1].contains("default") && !row[2].contains("default"),
+        "{row:?}"
+    );
+}
+
+#[test]
+fn a_picture_without_a_value_does_not_say_why() {
+    let dir = with(MISSED);
+    done(dir.path(), &["surface", "design.fll", "--out", "."]);
+    let svg = fs::read_to_string(dir.path().join("design-y.svg")).unwrap();
+    assert!(svg.contains("no line: no value") && !svg.contains("no rule fires"));
+}
+
+#[test]
+fn what_is_read_is_not_written_over() {
+    let dir = with(BOILER);
+    let here = dir.path();
+    fs::hard_link(here.join("design.fll"), here.join("linked.fll")).unwrap();
+    for args in [
+        &["check", "design.fll", "--json", "design.fll"][..],
+        &["check", "design.fll", "--json", "./linked.fll"],
+        &["eval", "design.fll", "--grid", "3", "--csv", "design.fll"],
+        &["eval", "linked.fll", "--grid", "3", "--csv", "design.fll"],
+        &[
+            "convert",
+            "linked.fll",
+            "--to",
+            "fcl",
+            "--out",
+            "design.fll",
+        ],
+    ] {
+        refused(
+            here,
+            args,
+            &["the design that is read", "allowed is another file"],
+        );
+    }
+    fs::hard_link(here.join("design.fll"), here.join("design-valve.svg")).unwrap();
+    let picture = ["surface", "design.fll", "--out", "."];
+    refused(
+        here,
+        &picture,
+        &["design-valve.svg is the design that is read"],
+    );
+    for file in ["design.fll", "linked.fll"] {
+        assert_eq!(fs::read_to_string(here.join(file)).unwrap(), BOILER);
+    }
 }

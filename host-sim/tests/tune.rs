@@ -517,3 +517,44 @@ fn an_interrupted_search_leaves_what_it_has_and_goes_on() {
     );
     fit(here, &more).assert().success();
 }
+
+#[test]
+fn results_do_not_take_the_place_of_what_is_read() {
+    let folder = folder();
+    let here = folder.path();
+    fs::create_dir(here.join("made")).unwrap();
+    fs::copy(here.join("detuned.fll"), here.join("made/tuned.fll")).unwrap();
+    fs::copy(here.join("data.csv"), here.join("made/report.json")).unwrap();
+    fs::hard_link(here.join("data.csv"), here.join("made/memberships.png")).unwrap();
+    let refused = |args: &str, what: &str| {
+        let args = format!("{args} --ignore fan¤(fixed) --evaluations 20 --out made");
+        let args: Vec<String> = args
+            .split_whitespace()
+            .map(|a| a.replace('¤', " "))
+            .collect();
+        let mut command = host_sim(here);
+        let output = command.arg("tune").args(args).assert().code(2).stdout("");
+        let said = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+        assert!(said.contains(&format!("{what} that is read")), "{said}");
+        assert!(!here.join("made/state.json").exists());
+    };
+    refused("made/tuned.fll --data data.csv", "the design");
+    refused("detuned.fll --data made/report.json", "the data");
+    refused("detuned.fll --data data.csv", "the data");
+    fs::remove_file(here.join("made/memberships.png")).unwrap();
+    // The state alone is gone on from in its place.
+    tune(
+        here,
+        "detuned.fll --data made/report.json --evaluations 20 --out other",
+    )
+    .args(["--ignore", "fan (fixed)"])
+    .assert()
+    .success();
+    tune(
+        here,
+        "detuned.fll --data made/report.json --evaluations 40 --out other",
+    )
+    .args(["--ignore", "fan (fixed)", "--resume", "other/state.json"])
+    .assert()
+    .success();
+}

@@ -1,7 +1,7 @@
 //! `host-sim merge`
 
 use super::bench::table;
-use super::{BadInput, print, put};
+use super::{BadInput, not_what_is_read, print, put};
 use clap::Args;
 use host_sim::bench::results::Results;
 use host_sim::bench::shard::merge;
@@ -25,6 +25,12 @@ pub fn execute(arguments: &MergeArguments) -> anyhow::Result<()> {
         .collect::<Result<Vec<_>, BadInput>>()?;
     let whole = merge(&files).map_err(BadInput)?;
     if let Some(file) = &arguments.json {
+        let parts: Vec<_> = arguments
+            .files
+            .iter()
+            .map(|part| ("a part", part.as_path()))
+            .collect();
+        not_what_is_read("--json", file, &parts)?;
         put(file, super::bench::json(&whole)?.as_bytes())?;
     }
     print(table::all(&whole))

@@ -1,6 +1,6 @@
 //! `host-sim run`
 
-use super::{BadInput, Variants, check_folder, load, print, put, whole};
+use super::{BadInput, Variants, check_folder, load, not_what_is_read, print, put, whole};
 use anyhow::Context;
 use clap::Args;
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
@@ -59,6 +59,7 @@ pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
     check_folder(&folder)?;
     if let Some(file) = &arguments.json {
         check_file(file, &folder)?;
+        not_what_is_read("--json", file, &[("the scenario", Path::new(name))])?;
     }
 
     let mut watch = Watch::new(&scenario, arguments.seed);

@@ -9,6 +9,9 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Where the state is, in the folder of the results.
+pub const STATE: &str = "state.json";
+
 /// Whether Ctrl-C was pressed, once [`listen`] was called.
 pub static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 

@@ -2,7 +2,7 @@
 
 use super::bench::Task;
 use super::run::json;
-use super::search::{INTERRUPTED, bad, bar, listen, remember, show};
+use super::search::{INTERRUPTED, STATE, bad, bar, listen, remember, show};
 use super::{BadInput, Interrupted, check_folder, number, print, put_all, whole};
 use anyhow::Context;
 use clap::Args;
@@ -115,7 +115,7 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
             "the library refuses the preset".to_owned(),
         ))
     })?;
-    let state = out.join("state.json");
+    let state = out.join(STATE);
     let bar = bar(arguments.evaluations);
     let found = Search {
         problem: &tuning,

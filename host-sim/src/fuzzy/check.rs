@@ -31,11 +31,11 @@ pub use watch::Watch;
 
 use super::evaluate::{meets, rules};
 use super::lower::Lowered;
-use super::model::{Antecedent, System};
+use super::model::{Antecedent, Output, System};
 use std::collections::BTreeSet;
 use sweep::Sweep;
 
-/// Values of outputs without a table that are kept, 8 bytes each, to look for turns in them.
+/// Values of outputs that are kept, 8 bytes each, to look for turns in them.
 const MOST_VALUES: usize = 32_000_000;
 
 /// All findings.
@@ -67,13 +67,11 @@ pub struct Report {
 
 /// Where an output turns.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Turns {
-    /// In its rule table.
-    Table(Vec<Turn>),
-    /// It has no table; so it was looked along every input on the grid.
-    Sampled(NoTable, Vec<Ripples>),
-    /// It has no table, and the grid has too many points.
-    Unknown(NoTable),
+pub struct Turns {
+    /// In its rule table, or why it has none.
+    pub table: Result<Vec<Turn>, NoTable>,
+    /// Along every input on the grid: the output may turn where its table does not. `None` if the grid has too many points.
+    pub sampled: Option<Vec<Ripples>>,
 }
 
 /// The error of an output.
@@ -83,6 +81,16 @@ pub struct Errors {
     pub measured: Accuracy,
     /// What it is nowhere above, for each of [`STRENGTHS`]: see [`bounds`].
     pub bounds: [f64; STRENGTHS.len()],
+}
+
+impl Errors {
+    /// The first of [`STRENGTHS`] at which more was measured than its bound allows: then the bounds are wrong, and nothing
+    /// may be built on them. All of the output's range is above nothing.
+    pub fn broken(&self, output: &Output) -> Option<usize> {
+        let whole = output.range.end() - output.range.start();
+        let mut classes = self.measured.classes.iter().zip(self.bounds);
+        classes.position(|(class, bound)| class.worst > bound && !(output.clamp && bound >= whole))
+    }
 }
 
 /// Checks a system, and its fixed point against `f64`, on a grid of about so many points.
@@ -95,15 +103,11 @@ pub fn check(
     watch.begin("looking for gaps", None);
     let coverage = coverage(system, MOST_WORK);
     let grid = Grid::new(system, points);
-    let tables = turns(system);
-    let untabled: Vec<usize> = (0..tables.len()).filter(|&o| tables[o].is_err()).collect();
+    let outputs = system.outputs.len();
     let sweep = Sweep {
         system,
         grid: &grid,
-        kept: match untabled.len().saturating_mul(grid.len()) <= MOST_VALUES {
-            true => &untabled,
-            false => &[],
-        },
+        keep: outputs.saturating_mul(grid.len()) <= MOST_VALUES,
         covers: coverage.is_none(),
         watch,
     };
@@ -123,17 +127,12 @@ pub fn check(
             (seen, Some(errors))
         }
     };
-    let turns = tables.into_iter().enumerate().map(|(output, table)| {
-        let place = sweep.kept.iter().position(|&kept| kept == output);
-        match (table, place) {
-            (Ok(turns), _) => Turns::Table(turns),
-            (Err(why), None) => Turns::Unknown(why),
-            (Err(why), Some(place)) => {
-                let values = seen.values.iter().skip(place).step_by(sweep.kept.len());
-                let values: Vec<f64> = values.copied().collect();
-                Turns::Sampled(why, ripples(system, &grid, output, &values))
-            }
-        }
+    let turns = turns(system).into_iter().enumerate();
+    let turns = turns.map(|(output, table)| {
+        let values = seen.values.iter().skip(output).step_by(outputs.max(1));
+        let values: Vec<f64> = values.copied().collect();
+        let sampled = sweep.keep.then(|| ripples(system, &grid, output, &values));
+        Turns { table, sampled }
     });
     Report {
         bare: bare(system),
@@ -212,6 +211,22 @@ mod tests {
     }
 
     #[test]
+    fn a_bound_below_what_is_measured_is_seen() {
+        let mut fan = fan();
+        let errors = check(&fan, lower(&fan).ok().as_ref(), 10_000, &()).errors;
+        let mut errors = errors.unwrap().remove(0);
+        assert_eq!(errors.broken(&fan.outputs[0]), None);
+        errors.bounds[1] = errors.measured.classes[1].worst / 2.0;
+        assert_eq!(errors.broken(&fan.outputs[0]), Some(1));
+        // Rounded limits may be half a step outside the range.
+        errors.bounds[1] = 100.0;
+        errors.measured.classes[1].worst = 100.000_01;
+        assert_eq!(errors.broken(&fan.outputs[0]), None);
+        fan.outputs[0].clamp = false;
+        assert_eq!(errors.broken(&fan.outputs[0]), Some(1));
+    }
+
+    #[test]
     fn terms_without_a_use_are_found() {
         let mut fan = fan();
         let extra = fan.inputs[1].terms[0].clone();
@@ -232,6 +247,10 @@ mod tests {
     #[test]
     fn a_clean_system_has_no_finding() {
         let report = check(&fan(), None, 1000, &());
+        let still = Turns {
+            table: Ok(vec![]),
+            sampled: Some(vec![]),
+        };
         assert_eq!(
             (
                 report.dominated,
@@ -240,7 +259,7 @@ mod tests {
                 report.turns,
                 report.errors
             ),
-            (vec![], vec![], vec![], vec![Turns::Table(vec![])], None)
+            (vec![], vec![], vec![], vec![still], None)
         );
     }
 }

@@ -57,7 +57,7 @@ pub fn point(system: &System, values: &[f64]) -> String {
     values_of(system, values, |x, span| number_to(x, 1e-4 * span))
 }
 
-/// A point as it was given, every digit.
+/// A point with every digit: as it was given, or where rounding could move it out of what it is an example of.
 pub fn given_point(system: &System, values: &[f64]) -> String {
     values_of(system, values, |x, _| exact(x))
 }

@@ -100,6 +100,11 @@ fn partition(rng: &mut impl Rng, range: &RangeInclusive<f64>) -> Vec<Shape> {
 
 /// A shape of any kind in and around a range.
 pub fn shape(rng: &mut impl Rng, range: &RangeInclusive<f64>) -> Shape {
+    any_shape(rng, range, 0.25)
+}
+
+/// Of its curves a part is `narrow`: so much that an even grid sees nothing of them.
+fn any_shape(rng: &mut impl Rng, range: &RangeInclusive<f64>, narrow: f64) -> Shape {
     let (start, width) = (*range.start(), range.end() - range.start());
     let mut at = |count: usize| {
         let mut at: Vec<f64> = (0..count)
@@ -108,15 +113,22 @@ pub fn shape(rng: &mut impl Rng, range: &RangeInclusive<f64>) -> Shape {
         at.sort_by(f64::total_cmp);
         at
     };
-    let (three, four) = (at(3), at(4));
-    let spread = width * rng.random_range(0.05..0.5);
+    let (mut three, four) = (at(3), at(4));
+    let mut spread = width * rng.random_range(0.05..0.5);
+    let kind = rng.random_range(0..12);
+    if kind >= 7 && rng.random_bool(narrow) {
+        let narrow = 10.0_f64.powf(rng.random_range(-5.0..-2.0));
+        spread *= narrow;
+        three[2] = three[1] + narrow * (three[2] - three[1]);
+        three[0] = three[1] - narrow * (three[1] - three[0]);
+    }
     let turned = rng.random_bool(0.5);
     let (from, to) = if turned {
         (three[2], three[0])
     } else {
         (three[0], three[2])
     };
-    match rng.random_range(0..12) {
+    match kind {
         0 | 1 => Shape::Triangle {
             left: if rng.random_bool(0.1) {
                 three[1]
@@ -233,10 +245,10 @@ fn output(rng: &mut impl Rng, index: usize, inputs: usize) -> Output {
     }
 }
 
-/// A shape that a centroid can use: samples miss a singleton.
+/// A shape that a centroid can use: samples miss a singleton and what is narrow.
 fn set(rng: &mut impl Rng, range: &RangeInclusive<f64>) -> Shape {
     loop {
-        match shape(rng, range) {
+        match any_shape(rng, range, 0.0) {
             Shape::Singleton(_) => {}
             other => return other,
         }

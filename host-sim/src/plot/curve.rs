@@ -56,7 +56,7 @@ pub fn curve_svg(
         }
         if points.iter().any(|point| point.1.is_none()) {
             let at = (panel.rect.right - 170.0, panel.rect.bottom + 36.0);
-            canvas.text("no line: no rule fires", at, 12.5, MUTED, FROM_LEFT)?;
+            canvas.text("no line: no value", at, 12.5, MUTED, FROM_LEFT)?;
         }
         panel.frame(canvas)
     })
@@ -78,7 +78,7 @@ mod tests {
         let (input, output) = (axis("x", &[], (0.0, 2.0)), axis("y", &[], (0.0, 4.0)));
         for eval in eval {
             let svg = sound(curve_svg("curve", &input, &output, eval).unwrap());
-            assert_eq!(svg.contains("no rule fires"), eval(0.5).is_none());
+            assert_eq!(svg.contains("no value"), eval(0.5).is_none());
         }
         assert!(curve_svg("", &input, &output, &|_| Some(f64::NAN)).is_err());
     }

@@ -41,6 +41,8 @@ const COARSE_CELLS: usize = 40;
 const HEAT_SIDE: f64 = 425.0;
 /// Most blocks of the heat map.
 const MOST_RUNS: usize = 9000;
+/// Rounding, of what the output ranges over: lines of one value do not follow it.
+const NOISE: f64 = 1e-9;
 /// Shades of the heat map; neighbours are hardly told apart, and runs of one shade keep the document small.
 const SHADES: f64 = 64.0;
 
@@ -153,8 +155,13 @@ impl Field {
         runs
     }
 
-    /// Lines of one value, in cells from the first row and column (marching squares).
-    fn isolines(&self, level: f64) -> Vec<Vec<Point>> {
+    /// Lines of one value, in cells from the first row and column (marching squares). What is on the level but for `noise` is
+    /// on it: a plateau there has an edge, and its rounding none.
+    fn isolines(&self, level: f64, noise: f64) -> Vec<Vec<Point>> {
+        let snapped = |value: f64| match (value - level).abs() <= noise {
+            true => level,
+            false => value,
+        };
         let mut segments: Vec<(Point, Point)> = Vec::new();
         for row in 0..self.cells {
             for col in 0..self.cells {
@@ -175,6 +182,7 @@ impl Field {
                         (from, to) = (to, from);
                     }
                     let (a, b) = (self.value(from.0, from.1), self.value(to.0, to.1));
+                    let (a, b) = (snapped(a), snapped(b));
                     if (a < level) != (b < level) {
                         let (from, to) =
                             ((from.1 as f64, from.0 as f64), (to.1 as f64, to.0 as f64));
@@ -294,7 +302,7 @@ fn heat_map(
         canvas.block(&key, NOTHING.to_rgba())?;
         canvas.outline(&key, 0.8, FRAME.to_rgba())?;
         let at = (key.right + 6.0, key.centre().1);
-        canvas.text("no rule fires", at, 12.5, MUTED, FROM_LEFT)?;
+        canvas.text("no value", at, 12.5, MUTED, FROM_LEFT)?;
     }
     colour_bar(
         canvas,
@@ -321,7 +329,7 @@ fn isolines(
     let mut taken: Vec<Rect> = Vec::new();
     for &level in &levels {
         let mut lines: Vec<Vec<Point>> = field
-            .isolines(level)
+            .isolines(level, NOISE * (range.end - range.start))
             .into_iter()
             .map(|line| {
                 line.iter()
@@ -773,7 +781,7 @@ mod tests {
             assert!(svg.contains(text), "{text}");
         }
         assert!(svg.matches("φ [°]").count() == 2);
-        assert!(!svg.contains("no rule fires"));
+        assert!(!svg.contains("no value"));
     }
 
     #[test]
@@ -785,7 +793,7 @@ mod tests {
     #[test]
     fn where_there_is_no_value_the_picture_says_so() {
         let svg = surface_svg(&spec(&|row, _| (row > 20.0).then_some(row))).unwrap();
-        assert!(svg.contains("no rule fires"));
+        assert!(svg.contains("no value"));
         let mut odd = spec(&|_, _| Some(0.0));
         odd.cols.range = (1.0, 1.0);
         assert!(surface_svg(&odd).is_err());
@@ -794,9 +802,28 @@ mod tests {
     #[test]
     fn isolines_are_joined() {
         let bowl = spec(&|row, col| Some(((row - 90.0) / 100.0).hypot((col - 2.5) / 2.5)));
-        let lines = Field::sample(&bowl, 60).unwrap().isolines(0.7);
+        let lines = Field::sample(&bowl, 60).unwrap().isolines(0.7, 1e-9);
         // One closed ring.
         assert_eq!(lines.len(), 1);
         assert_eq!(lines[0].first(), lines[0].last());
+    }
+
+    #[test]
+    fn rounding_on_a_plateau_draws_no_line() {
+        // 5 but for the last bit, from column 2.5 on; a slope up to it before.
+        let plateau = spec(&|row, col| {
+            let noise = if (row * 917.3 + col * 77.7).sin() > 0.0 {
+                1e-15
+            } else {
+                -1e-15
+            };
+            Some(col.min(2.5) * 2.0 + noise)
+        });
+        let lines = Field::sample(&plateau, 60).unwrap().isolines(5.0, 5e-9);
+        assert_eq!(lines.len(), 1);
+        assert!(
+            lines[0].iter().all(|point| (point.0 - 30.0).abs() < 1e-6),
+            "{lines:?}"
+        );
     }
 }

@@ -5,7 +5,7 @@
 
 use host_sim::fuzzy::check::{Bounds, Jumps, bounds, class, strength};
 use host_sim::fuzzy::evaluate::{Evaluator, Exact};
-use host_sim::fuzzy::files::{adapt, fll, load};
+use host_sim::fuzzy::files::{Format, adapt, fll, load, parse};
 use host_sim::fuzzy::lower::{Fixed, lower};
 use host_sim::fuzzy::model::{Input, Output, System};
 use host_sim::fuzzy::random;
@@ -58,19 +58,23 @@ fn ask(cases: &[Case]) -> Option<Vec<Answer>> {
     Some(serde_json::from_slice(&output.stdout).unwrap())
 }
 
-/// Random points in and a little around the ranges, and some whose every input is at a knot of one of its terms.
+/// Random points in and a little around the ranges, and some whose every input is at a knot of one of its terms or between
+/// two of them, however narrow the term is.
 fn points(rng: &mut impl Rng, system: &System) -> Vec<Vec<f64>> {
     let mut anywhere = |input: &Input| {
         let (start, end) = (*input.range.start(), *input.range.end());
         let x = start + (end - start) * rng.random_range(-0.1..1.1);
-        let knots: Vec<f64> = input.terms.iter().flat_map(|t| t.shape.knots()).collect();
-        let knot = knots[rng.random_range(0..knots.len())];
-        (x, knot)
+        let term = &input.terms[rng.random_range(0..input.terms.len())];
+        let knots = term.shape.knots();
+        let knot = rng.random_range(0..knots.len());
+        let next = knots[(knot + 1).min(knots.len() - 1)];
+        let between = knots[knot] + (next - knots[knot]) * rng.random_range(0.0..1.0);
+        [x, knots[knot], between]
     };
     let mut points = Vec::new();
     for _ in 0..POINTS {
-        let (free, at_knots) = system.inputs.iter().map(&mut anywhere).unzip();
-        points.extend([free, at_knots]);
+        let of_inputs: Vec<[f64; 3]> = system.inputs.iter().map(&mut anywhere).collect();
+        points.extend((0..3).map(|kind| of_inputs.iter().map(|of| of[kind]).collect()));
     }
     points
 }
@@ -87,6 +91,13 @@ fn case(rng: &mut impl Rng, system: &mut System) -> Case {
         fll: fll::write(system).unwrap_or_else(|refused| panic!("{refused}: {system:#?}")),
         points: points(rng, system),
     }
+}
+
+/// The listing of the chapter on fuzzy control: what a reader copies.
+fn listing() -> &'static str {
+    let chapter = include_str!("../../../docs/fuzzy.md");
+    let rest = chapter.split_once("```text\n").expect("a listing").1;
+    rest.split_once("```").expect("its end").0
 }
 
 /// What was compared, so that a test that compares nothing is seen.
@@ -187,11 +198,16 @@ fn compare_fixed(
 /// Compares systems in `f64` and in fixed point; `None` without pyfuzzylite.
 fn agree(systems: &mut [System], rng: &mut impl Rng) -> Option<Compared> {
     let cases: Vec<Case> = systems.iter_mut().map(|system| case(rng, system)).collect();
-    let answers = ask(&cases)?;
+    agree_on(systems, &cases)
+}
+
+/// The same with the texts and points that fuzzylite gets.
+fn agree_on(systems: &[System], cases: &[Case]) -> Option<Compared> {
+    let answers = ask(cases)?;
     assert_eq!(answers.len(), cases.len());
     let mut seen = Compared::default();
     let mut wrong = Vec::new();
-    for ((system, case), answer) in systems.iter().zip(&cases).zip(&answers) {
+    for ((system, case), answer) in systems.iter().zip(cases).zip(&answers) {
         assert_eq!(answer.outputs.len(), case.points.len());
         wrong.extend(compare(system, case, answer, &mut seen).err());
         // What does not fit into fixed point says so; it is counted below.
@@ -227,6 +243,40 @@ fn random_systems_agree_with_fuzzylite() {
     }
 }
 
+/// A curve on a part of 3e-6 to 5e-5 of its input's range, beside a weak rule that holds everywhere: what the curve is off in
+/// fixed point, the output is off, and nothing else is.
+fn steep(rng: &mut impl Rng) -> System {
+    let range = 10.0_f64.powf(rng.random_range(0.0..6.0));
+    let (at, width) = (
+        range * rng.random_range(0.1..0.9),
+        range * 10.0_f64.powf(rng.random_range(-5.5..-4.3)),
+    );
+    let curve = match rng.random_range(0..5) {
+        0 => format!("SShape {at} {}", at + width),
+        1 => format!("ZShape {at} {}", at + width),
+        2 => format!("Gaussian {at} {width}"),
+        3 => format!("Bell {at} {width} {}", rng.random_range(0.7..5.0)),
+        _ => format!("Sigmoid {at} {}", 1.0 / width),
+    };
+    let text = format!(
+        "Engine: steep\nInputVariable: x\n  range: 0 {range}\n  term: curve {curve}\n  term: all Ramp -2 -1\n\
+         OutputVariable: y\n  range: 0 100\n  defuzzifier: WeightedAverage\n  term: p Constant 0\n  term: q Constant 100\n\
+         RuleBlock: r\n  activation: General\n  rule: if x is curve then y is q\n  rule: if x is all then y is p with 0.05\n"
+    );
+    parse("steep.fll", text.as_bytes(), Format::Fll).unwrap()
+}
+
+#[test]
+fn steep_curves_agree_with_fuzzylite() {
+    let mut rng = Pcg64Mcg::seed_from_u64(40);
+    let mut systems: Vec<System> = (0..40).map(|_| steep(&mut rng)).collect();
+    if let Some(seen) = agree(&mut systems, &mut rng) {
+        assert!(seen.fixed > 100 * systems.len(), "{seen:?}");
+        // Near enough to see a bound that is too low.
+        assert!(seen.used > 0.3, "{seen:?}");
+    }
+}
+
 #[test]
 fn the_checked_in_designs_agree_with_fuzzylite() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/designs");
@@ -243,5 +293,18 @@ fn the_checked_in_designs_agree_with_fuzzylite() {
             seen.values > 100 * files.len() && seen.fixed > 50 * files.len(),
             "{seen:?}"
         );
+    }
+}
+
+#[test]
+fn the_listing_in_the_chapter_runs_in_fuzzylite_as_it_stands() {
+    let system = parse("fan.fll", listing().as_bytes(), Format::Fll).unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(10);
+    let case = Case {
+        fll: listing().to_owned(),
+        points: points(&mut rng, &system),
+    };
+    if let Some(seen) = agree_on(&[system], &[case]) {
+        assert!(seen.values > 100 && seen.fixed > 50, "{seen:?}");
     }
 }

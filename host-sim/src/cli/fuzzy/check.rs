@@ -9,7 +9,7 @@ mod text;
 use super::convert::Route;
 use super::design::Design;
 use crate::cli::run::json;
-use crate::cli::{number as between, print, put, whole};
+use crate::cli::{DESIGN, not_what_is_read, number as between, print, put, whole};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use findings::{Findings, Search};
@@ -54,7 +54,7 @@ enum Finding {
     UnreachableTerms,
     /// Conclusions beyond the output's range.
     BeyondRange,
-    /// Tables whose conclusions rise and fall along a row or a column; without a table, outputs that do on a grid.
+    /// Tables whose conclusions rise and fall along a row or a column, and outputs that do on a grid.
     NonMonotone,
     /// A design that fixed point cannot hold.
     NoFixedPoint,
@@ -70,6 +70,9 @@ enum Verdict {
 }
 
 pub fn execute(arguments: &CheckArguments) -> anyhow::Result<()> {
+    if let Some(file) = &arguments.json {
+        not_what_is_read("--json", file, &[(DESIGN, &arguments.design.file)])?;
+    }
     let design = Design::load(&arguments.design)?;
     let fast = limit::fast(&design, arguments)?;
     let (fixed, points) = (design.fixed.as_ref().ok(), arguments.points as usize);
@@ -86,6 +89,7 @@ pub fn execute(arguments: &CheckArguments) -> anyhow::Result<()> {
     }
     print(text::all(&findings))?;
     let mut said = denied(&findings, &arguments.deny);
+    said.extend(limit::broken(&design.system, &report));
     if let Some(most) = arguments.max_error {
         said.extend(limit::beyond(&findings, most));
     }
@@ -140,7 +144,7 @@ impl Findings {
                 let mut outputs = self.non_monotone.iter();
                 let found = outputs.any(|o| !o.cells.is_empty() || !o.ripples.is_empty());
                 let mut outputs = self.non_monotone.iter();
-                let open = outputs.any(|output| output.search == Search::None);
+                let open = outputs.any(|output| !output.sampled);
                 among(found, open, "the grid has too many points")
             }
             Finding::NoFixedPoint => among(self.no_fixed_point.is_some(), false, ""),

@@ -1,7 +1,7 @@
 //! `host-sim fuzzy convert`
 
 use super::From;
-use crate::cli::{BadInput, check_folder, print, put, put_all};
+use crate::cli::{BadInput, DESIGN, check_folder, not_what_is_read, print, put, put_all};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use host_sim::fuzzy::check::bounds;
@@ -111,24 +111,14 @@ fn check(arguments: &ConvertArguments) -> Result<(), BadInput> {
         None if arguments.to == To::C => Err(BadInput(
             "--to c writes two files; --out says where: NAME.c, or a folder for both".into(),
         )),
-        Some(out) => not_the_input(arguments, out),
+        Some(out) => not_the_design(arguments, out),
         None => Ok(()),
     }
 }
 
 /// Refuses to write over the design itself: what its file says beside the model, such as comments, would be lost.
-fn not_the_input(arguments: &ConvertArguments, out: &Path) -> Result<(), BadInput> {
-    let same = match (out.canonicalize(), arguments.file.canonicalize()) {
-        (Ok(out), Ok(file)) => out == file,
-        _ => false,
-    };
-    if !same {
-        return Ok(());
-    }
-    let out = out.display();
-    Err(BadInput(format!(
-        "--out {out}: is the design that is read, its comments would be lost; allowed is another file"
-    )))
+fn not_the_design(arguments: &ConvertArguments, out: &Path) -> Result<(), BadInput> {
+    not_what_is_read("--out", out, &[(DESIGN, &arguments.file)])
 }
 
 /// Writes it as a design file again.
@@ -205,7 +195,7 @@ fn c(arguments: &ConvertArguments, design: &Design<'_>) -> anyhow::Result<()> {
     let included = header.file_name().unwrap_or_default().to_string_lossy();
     let files = emit::c::write(design, &included);
     for file in [&source, &header] {
-        not_the_input(arguments, file)?;
+        not_the_design(arguments, file)?;
     }
     if source.parent() == Some(out) {
         std::fs::create_dir_all(out)

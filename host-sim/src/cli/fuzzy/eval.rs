@@ -3,7 +3,7 @@
 use super::design::Design;
 use super::named;
 use super::table::{right, table};
-use crate::cli::{BadInput, print, put, whole};
+use crate::cli::{BadInput, DESIGN, not_what_is_read, print, put, whole};
 use clap::Args;
 use comfy_table::{Cell, Table};
 use host_sim::fuzzy::check::{Grid, strength};
@@ -33,6 +33,9 @@ pub struct EvalArguments {
 const MOST_ROWS: usize = 2_000_000;
 
 pub fn execute(arguments: &EvalArguments) -> anyhow::Result<()> {
+    if let Some(file) = &arguments.csv {
+        not_what_is_read("--csv", file, &[(DESIGN, &arguments.design.file)])?;
+    }
     let design = Design::load(&arguments.design)?;
     let values = named::values(&design.system, "--input", &arguments.inputs)?;
     if let (Some(grid), Some(csv)) = (arguments.grid, &arguments.csv) {
@@ -71,7 +74,7 @@ fn at_point(design: &Design, point: &[f64]) -> anyhow::Result<()> {
     print(outside(system, &values))?;
     print(format_args!(
         "{}\n",
-        outputs(design, &exact, fixed.as_ref())
+        outputs(design, point, &exact, fixed.as_ref())
     ))?;
     print(format_args!("{}\n", fired(design, &exact, fixed.as_ref())))?;
     print(design.note())
@@ -123,31 +126,57 @@ fn outside(system: &System, values: &[Option<f64>]) -> String {
     text
 }
 
-fn outputs(design: &Design, exact: &Evaluation, fixed: Option<&Evaluation>) -> Table {
+fn outputs(
+    design: &Design,
+    point: &[f64],
+    exact: &Evaluation,
+    fixed: Option<&Evaluation>,
+) -> Table {
     let mut table = table(["output", "f64", "fixed point", "difference"]);
-    let evaluation = exact;
+    let concluded = concluded(&design.system, point);
     for (index, output) in design.system.outputs.iter().enumerate() {
         let resolution = design.resolution(index);
-        let none = match strength(&design.system, index, evaluation) > 0.0 {
-            true => "no value: the concluded sets meet no sample",
+        let fires = |of: &Evaluation| strength(&design.system, index, of) > 0.0;
+        let why = match fires(exact) {
+            true => "the concluded sets meet no sample",
             false => "no rule fires",
         };
-        let value =
-            |x: Option<f64>| x.map_or(none.to_owned(), |x| describe::number_to(x, resolution));
-        let exact = exact.outputs.get(index).copied().flatten();
-        let fixed = fixed.map(|fixed| fixed.outputs.get(index).copied().flatten());
-        let difference = match (exact, fixed.flatten()) {
+        let of = |of: &Evaluation| of.outputs.get(index).copied().flatten();
+        let text = |value: f64| describe::number_to(value, resolution);
+        let in_f64 = match (of(exact), concluded[index]) {
+            (Some(value), true) => text(value),
+            (Some(value), false) => format!("{}, the default: {why}", text(value)),
+            (None, _) if fires(exact) => format!("no value: {why}"),
+            (None, _) => why.to_owned(),
+        };
+        let in_fixed = match fixed.map(|fixed| (of(fixed), fires(fixed))) {
+            None => "–".to_owned(),
+            Some((Some(value), true)) => text(value),
+            Some((Some(value), false)) => format!("{}, the default", text(value)),
+            Some((None, _)) => "no value".to_owned(),
+        };
+        let difference = match (of(exact), fixed.and_then(of)) {
             (Some(exact), Some(fixed)) => format!("{:+.1e}", fixed - exact),
             _ => "–".to_owned(),
         };
         table.add_row([
             Cell::new(&output.name),
-            right(value(exact)),
-            right(fixed.map_or("–".to_owned(), value)),
+            right(in_f64),
+            right(in_fixed),
             right(difference),
         ]);
     }
     table
+}
+
+/// Whether each output has a value there without its default.
+fn concluded(system: &System, point: &[f64]) -> Vec<bool> {
+    let mut system = system.clone();
+    for output in &mut system.outputs {
+        output.default = None;
+    }
+    let values = Exact::new(&system).evaluate(point).outputs;
+    values.iter().map(Option::is_some).collect()
 }
 
 /// Every rule that fires, in `f64` or in fixed point.

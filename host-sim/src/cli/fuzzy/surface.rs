@@ -2,7 +2,7 @@
 
 use super::design::Design;
 use super::named;
-use crate::cli::{BadInput, check_folder, print, put_all};
+use crate::cli::{BadInput, DESIGN, check_folder, not_what_is_read, print, put_all};
 use anyhow::Context;
 use clap::Args;
 use host_sim::fuzzy::evaluate::{Evaluator, Exact};
@@ -84,6 +84,10 @@ pub fn execute(arguments: &SurfaceArguments) -> anyhow::Result<()> {
         };
         let name = free(&picture::file_name(&output.name), &mut taken);
         files.extend(pair(&format!("{stem}-{name}"), &svg)?);
+    }
+    for (name, _) in &files {
+        let read = [(DESIGN, arguments.design.file.as_path())];
+        not_what_is_read("--out", &out.join(name), &read)?;
     }
     std::fs::create_dir_all(out)
         .with_context(|| format!("{}: cannot be created", out.display()))?;

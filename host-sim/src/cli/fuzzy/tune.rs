@@ -6,8 +6,10 @@ mod result;
 
 use super::convert::refused;
 use super::design::Design;
-use crate::cli::search::{INTERRUPTED, bad, bar, listen, remember, show};
-use crate::cli::{BadInput, Interrupted, check_folder, number, print, whole};
+use crate::cli::search::{INTERRUPTED, STATE, bad, bar, listen, remember, show};
+use crate::cli::{
+    BadInput, DESIGN, Interrupted, check_folder, not_what_is_read, number, print, whole,
+};
 use clap::{ArgGroup, Args};
 use goal::Goal;
 use host_sim::fuzzy::model::System;
@@ -130,6 +132,7 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     };
     let out = &arguments.out;
     check_folder(out)?;
+    nothing_lost(arguments, &written)?;
     for change in renamed {
         eprintln!("note: in the result {change}");
     }
@@ -146,7 +149,7 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         known,
         stop: &INTERRUPTED,
     };
-    let state = out.join("state.json");
+    let state = out.join(STATE);
     let bar = bar(arguments.evaluations);
     let outcome = search
         .run(&mut |progress| {
@@ -168,6 +171,28 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         return Err(Interrupted(how).into());
     }
     Ok(())
+}
+
+/// Refuses results in the place of what is read. Only the state that is gone on from has its successor there.
+fn nothing_lost(arguments: &TuneArguments, written: &Written) -> Result<(), BadInput> {
+    let mut read = vec![(DESIGN, arguments.design.file.as_path())];
+    read.extend(
+        arguments
+            .data
+            .iter()
+            .map(|file| ("the data", file.as_path())),
+    );
+    let scenarios = arguments.scenario.iter();
+    read.extend(scenarios.map(|name| ("the scenario", Path::new(name))));
+    not_what_is_read("--out", &arguments.out.join(STATE), &read)?;
+    read.extend(
+        arguments
+            .resume
+            .iter()
+            .map(|file| ("the state", file.as_path())),
+    );
+    let mut files = written.files().into_iter();
+    files.try_for_each(|file| not_what_is_read("--out", &arguments.out.join(file), &read))
 }
 
 /// The command on one line, without folders and line breaks. Whether it was resumed makes no difference.

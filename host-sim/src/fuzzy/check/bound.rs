@@ -1,8 +1,8 @@
 //! How far fixed point can be from `f64` anywhere, not only where it was measured.
 //!
-//! 1. Each input's terms are compared along their own axis, at thousands of values: the greatest difference nearby, a tenth
-//!    more and a step of a degree, is what a term may be off. It holds all of rounding the input, straight pieces for curves,
-//!    rounding the degree.
+//! 1. Each input's terms are compared along their own axis, at thousands of values and many times between any two ends of
+//!    their straight pieces, however steep: the greatest difference nearby, a tenth more and a step of a degree, is what
+//!    a term may be off. It holds all of rounding the input, straight pieces for curves, rounding the degree.
 //! 2. The ranges are cut into boxes, finer where the bound is greatest. In each, every term's least and greatest degree are known, so those of every rule are, and how
 //!    far a rule may be off: the minimum and the maximum are off by no more than the worst of their operands, products by the
 //!    sum of what their factors are off.
@@ -14,18 +14,21 @@
 //! the bound is told for each of [`STRENGTHS`]. It does not hold within two steps of where a term jumps: there a rounded input
 //! may be on the other side.
 
+mod along;
+mod quotient;
+mod spread;
+
 use super::accuracy::STRENGTHS;
 use super::grid::Grid;
-use super::jumps::Jumps;
-use crate::fuzzy::evaluate::{conjoined, merged, rules, samples};
-use crate::fuzzy::lower::{Fixed, Lowered};
-use crate::fuzzy::model::{
-    Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Merge, Output, Rule, RuleBlock, System,
-};
+use crate::fuzzy::evaluate::{rules, samples};
+use crate::fuzzy::lower::Lowered;
+use crate::fuzzy::model::System;
+use along::{Along, Cell};
 use fuzzypilot::fuzzy::Grade;
-use fuzzypilot::fuzzy::system::{self as fixed, Degree};
+use fuzzypilot::fuzzy::system::Degree;
+use quotient::Target;
 use rayon::prelude::*;
-use std::ops::RangeInclusive;
+use spread::{Spread, of_rule};
 
 /// The greatest error of each output, in its own unit, for each of [`STRENGTHS`].
 pub type Bounds = Vec<[f64; STRENGTHS.len()]>;
@@ -37,9 +40,6 @@ const NEAR: f64 = 0.7;
 /// Boxes that are looked at more, fewer of a costly system.
 const MOST_BOXES: usize = 20_000;
 const MOST_WORK: usize = 100_000_000;
-/// Values along an input at which its terms are compared, and parts in which the greatest difference is kept.
-const VALUES: usize = 16_384;
-const PARTS: usize = 1024;
 /// A step of a degree.
 const DEGREE: f64 = 1.0 / Degree::ONE.bits() as f64;
 /// Half a step of a set's degree.
@@ -169,533 +169,37 @@ fn cost(system: &System) -> usize {
     8 * rules + samples * rules.min(16) + 100
 }
 
-/// A degree's least and greatest value in a box, and how far fixed point may be from it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Spread {
-    low: f64,
-    high: f64,
-    error: f64,
-}
-
-impl Spread {
-    const NONE: Self = Self {
-        low: 0.0,
-        high: 0.0,
-        error: 0.0,
-    };
-
-    /// What is zero everywhere is so in fixed point.
-    fn settled(self) -> Self {
-        if self.high <= 0.0 { Self::NONE } else { self }
-    }
-}
-
-/// Along one input of a box: from where to where, two steps wider on both sides as a rounded input may be, and every term's
-/// spread.
-struct Cell {
-    range: RangeInclusive<f64>,
-    terms: Vec<Spread>,
-}
-
-/// An input, and how far its terms may be off along it.
-struct Along<'a> {
-    input: &'a Input,
-    step: f64,
-    /// Each term's knots.
-    knots: Vec<Vec<f64>>,
-    /// Each term's greatest difference in each of [`PARTS`], then in pairs of them, fours, and so on from each.
-    errors: Vec<Vec<Vec<f64>>>,
-}
-
-impl<'a> Along<'a> {
-    fn all(system: &'a System, lowered: &Lowered) -> Vec<Self> {
-        let jumps = Jumps::of(system, lowered);
-        let along = |index: usize| Self::new(system, lowered, index, &jumps);
-        (0..system.inputs.len())
-            .into_par_iter()
-            .map(along)
-            .collect()
-    }
-
-    fn new(system: &'a System, lowered: &Lowered, index: usize, jumps: &Jumps) -> Self {
-        let (input, format) = (&system.inputs[index], lowered.tables().inputs[index].format);
-        let mut along = Self {
-            input,
-            step: format.value(1),
-            knots: input.terms.iter().map(|term| term.shape.knots()).collect(),
-            errors: vec![vec![vec![0.0; PARTS]]; input.terms.len()],
-        };
-        let mut at = along.values();
-        at.retain(|&x| !jumps.near_in(index, x));
-        let steps: Vec<i32> = at.iter().map(|&x| format.nearest(x)).collect();
-        let found = lowered.open(|fixed| degrees(&fixed, index, &steps));
-        for (&x, found) in at.iter().zip(found) {
-            let part = along.part(x);
-            for ((term, errors), found) in input.terms.iter().zip(&mut along.errors).zip(found) {
-                let error = &mut errors[0][part];
-                *error = error.max((term.shape.degree(x) - found).abs());
-            }
-        }
-        for levels in &mut along.errors {
-            let mut width = 1;
-            while 2 * width <= PARTS {
-                let last = &levels[levels.len() - 1];
-                let next = (0..=PARTS - 2 * width)
-                    .map(|i| last[i].max(last[i + width]))
-                    .collect();
-                levels.push(next);
-                width *= 2;
-            }
-        }
-        along
-    }
-
-    fn part(&self, x: f64) -> usize {
-        let share =
-            (x - self.input.range.start()) / (self.input.range.end() - self.input.range.start());
-        ((share * PARTS as f64) as usize).min(PARTS - 1)
-    }
-
-    /// Where terms are compared: evenly, at knots and beside them; and as far as can be from what they are rounded to.
-    fn values(&self) -> Vec<f64> {
-        let (start, end) = (*self.input.range.start(), *self.input.range.end());
-        let mut at: Vec<f64> = (0..=VALUES)
-            .map(|i| start + (end - start) * (i as f64 / VALUES as f64))
-            .collect();
-        let beside = 3.0 * self.step;
-        at.extend(
-            self.knots
-                .iter()
-                .flatten()
-                .flat_map(|x| [x - beside, *x, x + beside]),
-        );
-        let rounded = |x: f64| {
-            [
-                x,
-                ((x / self.step).round() + 0.499) * self.step,
-                ((x / self.step).round() - 0.499) * self.step,
-            ]
-        };
-        let mut at: Vec<f64> = at.into_iter().flat_map(rounded).collect();
-        at.retain(|x| self.input.range.contains(x));
-        at
-    }
-
-    fn cell(&self, from: f64, to: f64) -> Cell {
-        let range = (from - 2.0 * self.step)..=(to + 2.0 * self.step);
-        let inside = (to - from) * 1e-6;
-        let (first, last) = (self.part(*range.start()), self.part(*range.end()));
-        let level = (last - first + 1).ilog2() as usize;
-        let spread = |term: usize| {
-            let shape = &self.input.terms[term].shape;
-            let knots = self.knots[term]
-                .iter()
-                .copied()
-                .filter(|x| range.contains(x));
-            let ends = [
-                *range.start(),
-                from,
-                from + inside,
-                to - inside,
-                to,
-                *range.end(),
-            ];
-            let (low, high) = (ends.into_iter().chain(knots).map(|x| shape.degree(x)))
-                .fold((1.0_f64, 0.0_f64), |(low, high), d| {
-                    (low.min(d), high.max(d))
-                });
-            let of = &self.errors[term][level];
-            let error = of[first].max(of[last + 1 - (1 << level)]);
-            Spread {
-                low,
-                high,
-                error: 1.1 * error + DEGREE,
-            }
-        };
-        Cell {
-            terms: (0..self.knots.len()).map(spread).collect(),
-            range: range.clone(),
-        }
-    }
-}
-
-/// The library's degrees of one input's terms at many values, by a system that has no more than one rule.
-fn degrees(fixed: &Fixed<'_>, index: usize, at: &[i32]) -> Vec<Vec<f64>> {
-    let inputs = &fixed.system().inputs()[index..=index];
-    let rules = [fixed::Rule::new(&[&[fixed::Literal::Is(0, 0)]], &[(0, 0)])];
-    let blocks = [fixed::Block::min(&rules)];
-    let outputs = [fixed::Output {
-        range: [0, 1],
-        clamp: true,
-        default: 0,
-        complete: false,
-        defuzzifier: fixed::Defuzzifier::WeightedAverage {
-            merge: fixed::Merge::Sum,
-            terms: &[fixed::Number::Constant(0)],
-        },
-    }];
-    let system = fixed::System::checked(inputs, &blocks, &outputs);
-    let system = system.expect("its input was checked before, and the rest is good");
-    let mut terms = vec![Degree::ZERO; system.term_count()];
-    let mut each = |x: &i32| {
-        let done = system.evaluate(&[*x], &mut terms, &mut [Degree::ZERO], &mut [0]);
-        done.expect("memory by the system's own sizes");
-        terms
-            .iter()
-            .map(|degree| f64::from(degree.bits()) * DEGREE)
-            .collect()
-    };
-    at.iter().map(&mut each).collect()
-}
-
-fn of_rule(rule: &Rule, block: &RuleBlock, place: &[Cell]) -> Spread {
-    let antecedent = of_antecedent(&rule.antecedent, block.and, place);
-    let rounding = if rule.weight < 1.0 { DEGREE } else { 0.0 };
-    Spread {
-        low: antecedent.low * rule.weight,
-        high: antecedent.high * rule.weight,
-        error: antecedent.error * rule.weight + rounding,
-    }
-    .settled()
-}
-
-fn of_antecedent(antecedent: &Antecedent, and: Conjunction, place: &[Cell]) -> Spread {
-    match antecedent {
-        Antecedent::Is {
-            input,
-            term,
-            negated,
-        } => {
-            let spread = place[*input].terms[*term];
-            let turned = Spread {
-                low: 1.0 - spread.high,
-                high: 1.0 - spread.low,
-                ..spread
-            };
-            if *negated { turned } else { spread }.settled()
-        }
-        Antecedent::And(parts) => {
-            let whole = Spread {
-                low: 1.0,
-                high: 1.0,
-                error: 0.0,
-            };
-            let all = parts.iter().map(|part| of_antecedent(part, and, place));
-            all.fold(whole, |a, b| Spread {
-                low: conjoined(and, a.low, b.low),
-                high: conjoined(and, a.high, b.high),
-                error: match and {
-                    Conjunction::Min => a.error.max(b.error),
-                    Conjunction::Product => {
-                        a.error * (b.high + b.error).min(1.0) + b.error * a.high + DEGREE
-                    }
-                },
-            })
-            .settled()
-        }
-        Antecedent::Or(parts) => {
-            let any = parts.iter().map(|part| of_antecedent(part, and, place));
-            any.fold(Spread::NONE, |a, b| Spread {
-                low: a.low.max(b.low),
-                high: a.high.max(b.high),
-                error: a.error.max(b.error),
-            })
-        }
-    }
-}
-
-/// An output as its bound needs it.
-struct Target<'a> {
-    index: usize,
-    output: &'a Output,
-    /// A step of it, and of each input.
-    step: f64,
-    input_steps: Vec<f64>,
-    /// Its value where no rule fires in fixed point.
-    default: f64,
-    /// A centroid's samples, and its sets at them.
-    samples: Vec<f64>,
-    sets: Vec<Vec<f64>>,
-}
-
-impl<'a> Target<'a> {
-    fn new(system: &'a System, lowered: &Lowered, index: usize) -> Self {
-        let (output, table) = (&system.outputs[index], &lowered.tables().outputs[index]);
-        let samples = samples(output);
-        let set = |conclusion: &Conclusion| match conclusion {
-            Conclusion::Set(shape) => samples.iter().map(|&x| shape.degree(x)).collect(),
-            Conclusion::Constant(_) | Conclusion::Linear { .. } => Vec::new(),
-        };
-        Self {
-            index,
-            output,
-            step: table.format.value(1),
-            input_steps: (lowered.tables().inputs.iter())
-                .map(|input| input.format.value(1))
-                .collect(),
-            default: table.format.value(table.default),
-            sets: output
-                .terms
-                .iter()
-                .map(|term| set(&term.conclusion))
-                .collect(),
-            samples,
-        }
-    }
-
-    fn bounds(
-        &self,
-        system: &System,
-        degrees: &[Spread],
-        place: &[Cell],
-    ) -> [f64; STRENGTHS.len()] {
-        let about: Vec<(Conjunction, Spread, usize)> = rules(system)
-            .zip(degrees)
-            .flat_map(|((block, rule), spread)| {
-                let conclusions = rule.conclusions.iter().filter(|c| c.0 == self.index);
-                conclusions.map(|&(_, term)| (block.implication, *spread, term))
-            })
-            .filter(|(_, spread, _)| spread.high > 0.0)
-            .collect();
-        let strongest = about
-            .iter()
-            .map(|(_, spread, _)| spread.high)
-            .fold(0.0, f64::max);
-        let weights = match self.output.defuzzifier {
-            Defuzzifier::WeightedAverage => self.of_numbers(&about, place),
-            Defuzzifier::Centroid { .. } => self.of_sets(&about),
-        };
-        let whole = self.output.range.end() - self.output.range.start();
-        STRENGTHS.map(|least| {
-            if strongest <= 0.0 || strongest < least {
-                return 0.0;
-            }
-            let weight = (weights.least)(least).max(weights.low);
-            let (off, apart) = (weights.error, weights.high_value - weights.low_value);
-            let silent = weight <= off;
-            // In between the two ends it stays in any case, or, if fixed point may see no rule fire, at its default.
-            let ends = if silent {
-                weights.high_value.max(self.default) - weights.low_value.min(self.default)
-            } else {
-                apart
-            };
-            let quotient = if silent {
-                ends
-            } else {
-                (apart * off / (weight - off)).min(ends)
-            };
-            let bound = quotient + weights.rounding;
-            if self.output.clamp {
-                bound.min(whole)
-            } else {
-                bound
-            }
-        })
-    }
-
-    /// Σ w·z / Σ w.
-    fn of_numbers(&self, about: &[(Conjunction, Spread, usize)], place: &[Cell]) -> Weights<'_> {
-        let mut groups = vec![Spread::NONE; self.output.terms.len()];
-        for &(_, spread, term) in about {
-            let group = &mut groups[term];
-            *group = Spread {
-                low: merged(self.output.merge, group.low, spread.low),
-                high: merged(self.output.merge, group.high, spread.high),
-                error: merged(self.output.merge, group.error, spread.error),
-            };
-        }
-        let mut weights = Weights::new(Box::new(|least| least));
-        weights.rounding = self.step;
-        for (term, group) in self
-            .output
-            .terms
-            .iter()
-            .zip(&groups)
-            .filter(|(_, g)| g.high > 0.0)
-        {
-            weights.low += group.low;
-            weights.error += group.error;
-            let (low, high, rounding) = self.number(&term.conclusion, place);
-            weights.include(low, high);
-            weights.rounding = weights.rounding.max(self.step + rounding);
-        }
-        weights
-    }
-
-    /// A conclusion's least and greatest value in a box, and how far fixed point may be from it.
-    fn number(&self, conclusion: &Conclusion, place: &[Cell]) -> (f64, f64, f64) {
-        match conclusion {
-            Conclusion::Constant(value) => (*value, *value, self.step / 2.0),
-            Conclusion::Linear {
-                coefficients,
-                constant,
-            } => {
-                let (mut low, mut high, mut rounding) = (*constant, *constant, self.step);
-                let most = coefficients
-                    .iter()
-                    .fold(0.0_f64, |most, c| most.max(c.abs()));
-                for ((c, cell), step) in coefficients.iter().zip(place).zip(&self.input_steps) {
-                    let ends = [cell.range.start(), cell.range.end()];
-                    let values = ends.map(|x| c * x);
-                    low += values[0].min(values[1]);
-                    high += values[0].max(values[1]);
-                    // The input, and the coefficient: of the largest, 30 bits are kept.
-                    let reach = ends[0].abs().max(ends[1].abs());
-                    rounding += c.abs() * step / 2.0 + most * reach / f64::from(1 << 28);
-                }
-                (low, high, rounding)
-            }
-            Conclusion::Set(_) => (
-                *self.output.range.start(),
-                *self.output.range.end(),
-                self.step,
-            ),
-        }
-    }
-
-    /// Where the largest counts, rules that do the same to the same set as one: thousands of rules have few sets.
-    fn together(
-        &self,
-        about: &[(Conjunction, Spread, usize)],
-    ) -> Vec<(Conjunction, Spread, usize)> {
-        if self.output.merge == Merge::Sum {
-            return about.to_vec();
-        }
-        let mut groups: Vec<(Conjunction, Spread, usize)> = Vec::new();
-        for &(implication, spread, term) in about {
-            let same = groups
-                .iter_mut()
-                .find(|group| (group.0, group.2) == (implication, term));
-            match same {
-                Some((_, group, _)) => {
-                    *group = Spread {
-                        low: group.low.max(spread.low),
-                        high: group.high.max(spread.high),
-                        error: group.error.max(spread.error),
-                    };
-                }
-                None => groups.push((implication, spread, term)),
-            }
-        }
-        groups
-    }
-
-    /// Σ μ·x / Σ μ over the samples.
-    fn of_sets(&self, about: &[(Conjunction, Spread, usize)]) -> Weights<'_> {
-        let rules: Vec<_> = self
-            .together(about)
-            .into_iter()
-            .map(|(implication, spread, term)| (implication, spread, &self.sets[term]))
-            .collect();
-        // The least area that a rule of this degree has.
-        let areas = rules.clone();
-        let mut weights = Weights::new(Box::new(move |least| {
-            let able = areas.iter().filter(|(_, spread, _)| spread.high >= least);
-            let area = able.map(|(implication, _, set)| -> f64 {
-                set.iter()
-                    .map(|grade| conjoined(*implication, least, *grade))
-                    .sum()
-            });
-            area.fold(f64::INFINITY, f64::min)
-        }));
-        // A place among the samples has so many bits; and rounding to steps.
-        let apart = self
-            .samples
-            .windows(2)
-            .map(|two| two[1] - two[0])
-            .fold(0.0, f64::max);
-        weights.rounding = 2.0 * self.step + apart / f64::from(1 << 20);
-        for (sample, &x) in self.samples.iter().enumerate() {
-            let (mut low, mut error, mut any) = (0.0, 0.0, false);
-            for &(implication, spread, set) in &rules {
-                let grade = set[sample];
-                if grade <= 0.0 {
-                    continue;
-                }
-                any = true;
-                low = merged(
-                    self.output.merge,
-                    low,
-                    conjoined(implication, spread.low, grade),
-                );
-                let own = match implication {
-                    Conjunction::Min => spread.error.max(SET),
-                    Conjunction::Product => spread.error * grade + spread.high * SET + DEGREE,
-                };
-                error = merged(self.output.merge, error, own);
-            }
-            weights.low += low;
-            weights.error += error;
-            if any {
-                weights.include(x, x);
-            }
-        }
-        weights
-    }
-}
-
-/// What a quotient is made of.
-struct Weights<'a> {
-    /// The least that all weights come to in the box, and at least, if the strongest rule has a given degree.
-    low: f64,
-    least: Box<dyn Fn(f64) -> f64 + 'a>,
-    /// How far they may be off in all.
-    error: f64,
-    /// The least and the greatest value that has a weight.
-    low_value: f64,
-    high_value: f64,
-    /// What rounding the values and the quotient may add.
-    rounding: f64,
-}
-
-impl<'a> Weights<'a> {
-    fn new(least: Box<dyn Fn(f64) -> f64 + 'a>) -> Self {
-        Self {
-            low: 0.0,
-            least,
-            error: 0.0,
-            low_value: f64::INFINITY,
-            high_value: f64::NEG_INFINITY,
-            rounding: 0.0,
-        }
-    }
-
-    fn include(&mut self, low: f64, high: f64) {
-        self.low_value = self.low_value.min(low);
-        self.high_value = self.high_value.max(high);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzzy::check::{class, strength};
+    use crate::fuzzy::check::{Jumps, class, strength};
     use crate::fuzzy::evaluate::{Evaluator, Exact};
     use crate::fuzzy::lower::lower;
+    use crate::fuzzy::model::{Input, Shape};
     use crate::fuzzy::random;
-    use crate::fuzzy::sample::fan;
+    use crate::fuzzy::sample::{fan, rule};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
+    use std::ops::RangeInclusive;
 
-    /// The greatest error in each class at random points, by output; points near jumps left out.
+    /// The greatest error in each class at random points, by output: some of them anywhere, some between two knots of a
+    /// term, however narrow it is; points near jumps left out.
     fn measured(system: &System, lowered: &Lowered, rng: &mut Pcg64Mcg, points: usize) -> Bounds {
         let exact = Exact::new(system);
         let mut worst = vec![[0.0_f64; STRENGTHS.len()]; system.outputs.len()];
-        let grids: Vec<Vec<f64>> = (Along::all(system, lowered).iter())
-            .map(Along::values)
-            .collect();
         let jumps = Jumps::of(system, lowered);
         for _ in 0..points {
-            let point: Vec<f64> = system
-                .inputs
-                .iter()
-                .zip(&grids)
-                .map(|(input, grid)| {
-                    let near = grid[rng.random_range(0..grid.len())];
-                    let free = rng.random_range(input.range.clone());
-                    if rng.random_bool(0.3) { near } else { free }
-                })
-                .collect();
+            let mut value = |input: &Input| {
+                let term = &input.terms[rng.random_range(0..input.terms.len())];
+                let knots = term.shape.knots();
+                let knot = rng.random_range(0..knots.len());
+                let next = knots[(knot + 1).min(knots.len() - 1)];
+                let near = knots[knot] + (next - knots[knot]) * rng.random_range(0.0..=1.0);
+                let near = near.clamp(*input.range.start(), *input.range.end());
+                let free = rng.random_range(input.range.clone());
+                if rng.random_bool(0.6) { near } else { free }
+            };
+            let point: Vec<f64> = system.inputs.iter().map(&mut value).collect();
             if jumps.near(&point) {
                 continue;
             }
@@ -741,6 +245,72 @@ mod tests {
         }
         // Bounds that nothing comes near would hold as well, and tell nothing.
         assert!(tightest.iter().all(|share| *share > 0.05), "{tightest:?}");
+    }
+
+    /// One steep curve beside a weak rule that holds everywhere: what the curve is off is what the output is off.
+    fn steep(shape: Shape, range: RangeInclusive<f64>) -> System {
+        let mut system = fan();
+        system.inputs.truncate(1);
+        let flat = Shape::Trapezoid {
+            left: f64::NEG_INFINITY,
+            rise: 0.0,
+            fall: 1.0,
+            right: f64::INFINITY,
+        };
+        system.inputs[0].range = range;
+        system.inputs[0].terms.truncate(2);
+        system.inputs[0].terms[0].shape = shape;
+        system.inputs[0].terms[1].shape = flat;
+        let mut weak = rule(&[(0, 1, false)], &[(0, 0)]);
+        weak.weight = 0.05;
+        system.blocks[0].rules = vec![rule(&[(0, 0, false)], &[(0, 2)]), weak];
+        system
+    }
+
+    #[test]
+    fn what_is_narrower_than_any_even_grid_is_bounded_too() {
+        let mut rng = Pcg64Mcg::seed_from_u64(5);
+        let mut tightest = 0.0_f64;
+        for design in 0..20 {
+            let range = 10.0_f64.powf(rng.random_range(0.0..6.0));
+            let at = range * rng.random_range(0.1..0.9);
+            let width = range * 10.0_f64.powf(rng.random_range(-5.5..-4.3));
+            let shape = match design % 5 {
+                0 => Shape::Spline {
+                    from: at,
+                    to: at + width,
+                },
+                1 => Shape::Spline {
+                    from: at + width,
+                    to: at,
+                },
+                2 => Shape::Gaussian {
+                    mean: at,
+                    deviation: width,
+                },
+                3 => Shape::Bell {
+                    centre: at,
+                    width,
+                    slope: rng.random_range(0.7..5.0),
+                },
+                _ => Shape::Sigmoid {
+                    inflection: at,
+                    slope: 1.0 / width,
+                },
+            };
+            let system = steep(shape, 0.0..=range);
+            let lowered = lower(&system).unwrap();
+            let bound = bounds(&system, &lowered)[0];
+            let measured = measured(&system, &lowered, &mut rng, 4000)[0];
+            for (class, (measured, bound)) in measured.into_iter().zip(bound).enumerate() {
+                assert!(
+                    measured <= bound,
+                    "class {class}: {measured} above {bound}: {system:#?}"
+                );
+                tightest = tightest.max(measured / bound);
+            }
+        }
+        assert!(tightest > 0.3, "{tightest}");
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! Where an output rises and falls again along an input, seen on a grid: for outputs without a rule table. What is between
-//! the grid's points is not seen.
+//! Where an output rises and falls again along an input, seen on a grid. What is between the grid's points is not seen.
 
 use super::grid::Grid;
 use crate::fuzzy::model::System;

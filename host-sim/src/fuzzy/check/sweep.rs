@@ -19,8 +19,8 @@ pub struct Sweep<'a> {
     pub system: &'a System,
     /// Where.
     pub grid: &'a Grid,
-    /// Outputs whose values are kept.
-    pub kept: &'a [usize],
+    /// Whether the outputs' values are kept.
+    pub keep: bool,
     /// Whether it is for gaps, too.
     pub covers: bool,
     /// Who is told.
@@ -35,7 +35,7 @@ pub struct Seen {
     pub accuracy: Vec<Accuracy>,
     /// Gaps, if it was for them.
     pub sampled: Sampled,
-    /// Point after point, in each the kept outputs.
+    /// Point after point, in each every output, NaN where it has no value; if they are kept.
     pub values: Vec<f64>,
 }
 
@@ -73,9 +73,11 @@ impl Sweep<'_> {
         if self.covers {
             seen.sampled.see(&point, &evaluation);
         }
-        let kept = self.kept.iter().map(|&output| evaluation.outputs[output]);
-        seen.values
-            .extend(kept.map(|value| value.unwrap_or(f64::NAN)));
+        if self.keep {
+            let values = evaluation.outputs.iter();
+            seen.values
+                .extend(values.map(|value| value.unwrap_or(f64::NAN)));
+        }
         if let Some((fixed, _)) = fixed.filter(|(_, jumps)| !jumps.near(&point)) {
             let found = fixed.evaluate(&point);
             Accuracy::see(&mut seen.accuracy, self.system, &point, &evaluation, &found);
@@ -138,7 +140,7 @@ mod tests {
         let sweep = Sweep {
             system: &fan,
             grid: &grid,
-            kept: &[],
+            keep: false,
             covers: false,
             watch: &(),
         };

@@ -32,14 +32,20 @@ pub enum NoTable {
     Not(usize),
     /// A rule that does not ask about each input once.
     Asks(usize),
+    /// Two rules that ask the same: what they conclude together is not in either.
+    Cell(usize, usize),
     /// A term that is no number for all inputs, by its index.
     Linear(usize),
     /// A term whose set is zero at every sample.
     Unmet(usize),
 }
 
-/// The turns of every output that has a table: one or two inputs, each rule about it "a is x" or "a is x and b is y", its
-/// conclusions numbers or sets (a set counts as its centroid). In place of an output without one: why.
+/// The turns of every output that has a table: one or two inputs, each rule about it "a is x" or "a is x and b is y", no two of
+/// them the same, its conclusions numbers or sets (a set counts as its centroid); rules of weight zero are none. In place of
+/// an output without one: why.
+///
+/// A table that does not turn is no promise: where terms do not divide an input between neighbouring peaks, or weights differ,
+/// an output may turn all the same.
 pub fn turns(system: &System) -> Vec<Result<Vec<Turn>, NoTable>> {
     let orders: Vec<Vec<usize>> = system.inputs.iter().map(order).collect();
     (0..system.outputs.len())
@@ -47,13 +53,14 @@ pub fn turns(system: &System) -> Vec<Result<Vec<Turn>, NoTable>> {
         .collect()
 }
 
-/// Conclusions by the terms of the first and the second input; with one input the second is 0.
-type Table = BTreeMap<(usize, usize), f64>;
+/// Rules and their conclusions by the terms of the first and the second input; with one input the second is 0.
+type Table = BTreeMap<(usize, usize), (usize, f64)>;
 
 fn table(system: &System, index: usize) -> Result<Table, NoTable> {
     let output = &system.outputs[index];
     let mut table = Table::new();
-    for (number, (_, rule)) in rules(system).enumerate() {
+    let rules = rules(system).enumerate();
+    for (number, (_, rule)) in rules.filter(|(_, (_, rule))| rule.weight > 0.0) {
         for &(_, term) in rule.conclusions.iter().filter(|c| c.0 == index) {
             let cell = cell(&rule.antecedent, system.inputs.len(), number)?;
             let conclusion = &output.terms[term].conclusion;
@@ -61,7 +68,9 @@ fn table(system: &System, index: usize) -> Result<Table, NoTable> {
                 Conclusion::Set(_) => NoTable::Unmet(term),
                 Conclusion::Constant(_) | Conclusion::Linear { .. } => NoTable::Linear(term),
             })?;
-            table.insert(cell, height);
+            if let Some((first, _)) = table.insert(cell, (number, height)) {
+                return Err(NoTable::Cell(first, number));
+            }
         }
     }
     match table.is_empty() {
@@ -129,7 +138,7 @@ fn of_table(orders: &[Vec<usize>], output: usize, table: &Table) -> Vec<Turn> {
     for &col in cols {
         let line: Vec<(usize, f64)> = rows
             .iter()
-            .filter_map(|&row| Some((row, *table.get(&(row, col))?)))
+            .filter_map(|&row| Some((row, table.get(&(row, col))?.1)))
             .collect();
         let held = (orders.len() > 1).then_some((1, col));
         found.extend(of_line(&line).map(|cells| Turn {
@@ -142,7 +151,7 @@ fn of_table(orders: &[Vec<usize>], output: usize, table: &Table) -> Vec<Turn> {
     for &row in rows {
         let line: Vec<(usize, f64)> = cols
             .iter()
-            .filter_map(|&col| Some((col, *table.get(&(row, col))?)))
+            .filter_map(|&col| Some((col, table.get(&(row, col))?.1)))
             .collect();
         found.extend(of_line(&line).map(|cells| Turn {
             output,
@@ -219,6 +228,11 @@ mod tests {
         };
         fan.blocks[0].rules[0].antecedent = of(0);
         assert_eq!(turns(&fan), [Err(NoTable::Asks(0))]);
+        let asked = fan.blocks[0].rules[1].antecedent.clone();
+        fan.blocks[0].rules[0].antecedent = asked;
+        assert_eq!(turns(&fan), [Err(NoTable::Cell(0, 1))]);
+        fan.blocks[0].rules[1].weight = 0.0;
+        assert_eq!(turns(&fan), [Ok(vec![])]);
         fan.blocks[0].rules[0].antecedent = Antecedent::Or(vec![of(0), of(1)]);
         assert_eq!(turns(&fan), [Err(NoTable::Or(0))]);
         fan.inputs.push(fan.inputs[0].clone());

@@ -91,9 +91,9 @@ fn within(errors: &[f64], share: f64) -> f64 {
 fn fixed_point_agrees_with_f64() {
     let [straight, curved] = errors(400, 60);
     assert!(straight.len() > 10_000 && curved.len() > 10_000);
-    // Wherever something fires with a tenth at least: the worst, and 99 of 100.
+    // Wherever something fires with a tenth at least: the worst, where a flank may be as narrow as some steps, and 99 of 100.
     assert!(
-        (1e-6..3e-4).contains(&within(&straight, 1.0)),
+        (1e-6..2e-3).contains(&within(&straight, 1.0)),
         "{}",
         within(&straight, 1.0)
     );
@@ -102,14 +102,15 @@ fn fixed_point_agrees_with_f64() {
         "{}",
         within(&straight, 0.99)
     );
-    // Curves are cut into pieces: the worst are linear conclusions many times as large as the output's range.
+    // Curves are cut into pieces, and the worst are linear conclusions many times as large as the output's range, or curves
+    // narrower than a step, which are a step wide in fixed point.
     assert!(
-        (1e-5..5e-2).contains(&within(&curved, 1.0)),
+        (1e-5..2e-1).contains(&within(&curved, 1.0)),
         "{}",
         within(&curved, 1.0)
     );
     assert!(
-        (1e-6..1e-3).contains(&within(&curved, 0.99)),
+        (1e-6..2e-3).contains(&within(&curved, 0.99)),
         "{}",
         within(&curved, 0.99)
     );

@@ -10,8 +10,9 @@ use fuzzypilot::tables::fine::PRINTED;
 use host_sim::fuzzy::evaluate::{Evaluator, Exact};
 use host_sim::fuzzy::files::load;
 use std::fmt::{self, Display, Formatter};
-use std::io::Read;
-use std::path::PathBuf;
+
+#[path = "../../../oracle/grid.rs"]
+mod grid;
 
 /// The most that is allowed: units of the speed's axis, and degrees.
 const ALLOWED: [f64; 2] = [0.0005, 0.01];
@@ -94,24 +95,12 @@ pub fn agreements() -> anyhow::Result<Vec<Agreement>> {
 }
 
 fn fuzzylite() -> anyhow::Result<Option<Agreement>> {
-    let root = std::env::var_os("FUZZYPILOT_DATA")
-        .map_or_else(|| repository("../shared/data"), PathBuf::from);
-    let file = root.join("oracle/fine-grid.csv.gz");
-    let Ok(packed) = std::fs::File::open(&file) else {
+    let rows = grid::rows(repository("../shared/data")).map_err(anyhow::Error::msg)?;
+    let Some(rows) = rows else {
         return Ok(None);
     };
-    let name = || file.display().to_string();
-    let mut text = String::new();
-    flate2::read::GzDecoder::new(packed)
-        .read_to_string(&mut text)
-        .with_context(name)?;
     let mut agreement = Agreement::new("fuzzylite's grid");
-    for line in text.lines().skip(1) {
-        let cells: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
-        let cells = cells.with_context(name)?;
-        let [d, phi, speed, deflection] = cells[..] else {
-            anyhow::bail!("{}: not four columns: {line}", name());
-        };
+    for [d, phi, speed, deflection] in rows {
         agreement.see([d, phi], [speed, deflection]);
     }
     Ok(Some(agreement))

@@ -109,6 +109,8 @@ pub struct BeyondRange {
 pub struct NonMonotone {
     pub output: String,
     pub search: Search,
+    /// Whether it was looked for at the grid's points, too.
+    pub sampled: bool,
     /// Why not in a table.
     pub why: Option<String>,
     pub cells: Vec<Cells>,
@@ -151,16 +153,22 @@ pub struct OutputError {
 }
 
 impl OutputError {
-    /// Each class of points that says something, with its place among all: one that adds no point to the one before does
-    /// not.
+    /// Each class that says something, with its place among all: one that adds no point to the one before and has, as far as
+    /// it is printed, the same bound does not. Rules may be so weak between the grid's points alone.
     pub fn shown(&self) -> impl Iterator<Item = (usize, &Class)> {
-        let mut seen = 0;
+        let mut seen = (0, rounded(0.0));
         self.classes.iter().enumerate().filter(move |(_, class)| {
-            let new = class.points != seen;
-            seen = class.points;
+            let this = (class.points, rounded(class.nowhere_above));
+            let new = this != seen;
+            seen = this;
             new
         })
     }
+}
+
+/// An error as it is printed.
+pub fn rounded(error: f64) -> String {
+    format!("{error:.1e}")
 }
 
 /// Where the strongest rule has this degree at least.

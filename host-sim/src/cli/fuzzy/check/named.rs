@@ -44,7 +44,7 @@ impl Named<'_> {
             region: sides.map(|(i, stretch)| self.side(i, stretch)).collect(),
             share: gap.share,
             example: self.point(&gap.example()),
-            example_text: describe::point(self.0, &gap.example()),
+            example_text: describe::given_point(self.0, &gap.example()),
         }
     }
 
@@ -57,7 +57,7 @@ impl Named<'_> {
                 region: Vec::new(),
                 share: *count as f64 / points as f64,
                 example: self.point(example),
-                example_text: describe::point(self.0, example),
+                example_text: describe::given_point(self.0, example),
             })
         })
         .collect()
@@ -137,29 +137,23 @@ impl Named<'_> {
     }
 
     pub fn non_monotone(&self, output: usize, turns: &Turns) -> NonMonotone {
-        let none = NonMonotone {
+        let cells = turns.table.iter().flatten();
+        let ripples = turns.sampled.iter().flatten();
+        NonMonotone {
             output: self.output(output),
-            search: Search::Table,
-            why: None,
-            cells: Vec::new(),
-            ripples: Vec::new(),
-        };
-        match turns {
-            Turns::Table(turns) => NonMonotone {
-                cells: turns.iter().map(|turn| self.cells(turn)).collect(),
-                ..none
+            search: match (&turns.table, &turns.sampled) {
+                (Ok(_), _) => Search::Table,
+                (Err(_), Some(_)) => Search::Sampled,
+                (Err(_), None) => Search::None,
             },
-            Turns::Sampled(why, ripples) => NonMonotone {
-                search: Search::Sampled,
-                why: Some(self.no_table(output, *why)),
-                ripples: ripples.iter().map(|ripples| self.ripple(ripples)).collect(),
-                ..none
-            },
-            Turns::Unknown(why) => NonMonotone {
-                search: Search::None,
-                why: Some(self.no_table(output, *why)),
-                ..none
-            },
+            sampled: turns.sampled.is_some(),
+            why: turns
+                .table
+                .as_ref()
+                .err()
+                .map(|why| self.no_table(output, *why)),
+            cells: cells.map(|turn| self.cells(turn)).collect(),
+            ripples: ripples.map(|ripples| self.ripple(ripples)).collect(),
         }
     }
 
@@ -200,6 +194,9 @@ impl Named<'_> {
             NoTable::Or(index) => format!("{} has an OR", rule(index)),
             NoTable::Not(index) => format!("{} has a NOT", rule(index)),
             NoTable::Asks(index) => format!("{} does not ask about each input once", rule(index)),
+            NoTable::Cell(first, second) => {
+                format!("{} and {} ask the same", rule(first), rule(second))
+            }
             NoTable::Linear(index) => format!("{} is linear", term(index)),
             NoTable::Unmet(index) => format!("{} meets no sample", term(index)),
         }
@@ -220,7 +217,7 @@ impl Named<'_> {
                     rms: class.rms(),
                     greatest: class.worst,
                     at: self.point(&class.at),
-                    at_text: describe::point(self.0, &class.at),
+                    at_text: describe::given_point(self.0, &class.at),
                     nowhere_above: bound,
                 })
                 .collect(),

@@ -1,6 +1,6 @@
 //! Findings as they are printed.
 
-use super::findings::{Findings, Gap, NonMonotone, Search, Side};
+use super::findings::{Findings, Gap, NonMonotone, Search, Side, rounded};
 use crate::cli::fuzzy::table::{right, table};
 use comfy_table::{Cell, ContentArrangement, Table};
 use host_sim::fuzzy::check::{LEAST_TURN, STRENGTHS};
@@ -152,19 +152,15 @@ fn non_monotone(findings: &Findings) -> String {
         );
     }
     let rows = all.count();
-    let of = |search| move |of: &&NonMonotone| of.search == search;
-    let mut text = match findings
-        .non_monotone
-        .iter()
-        .any(|o| o.search == Search::Table)
-    {
+    let is_table = |of: &NonMonotone| of.search == Search::Table;
+    let mut text = match findings.non_monotone.iter().any(is_table) {
         true => section(title, rows, cells),
         // Not "none" where nothing could be.
         false => format!("{title}: no output has a table\n"),
     };
     let mut ripples = table(["output", "along", "lines", "the greatest, at", "values"]);
     let mut rows = 0;
-    for of in findings.non_monotone.iter().filter(of(Search::Sampled)) {
+    for of in &findings.non_monotone {
         for ripple in &of.ripples {
             rows += 1;
             if rows > MOST_LINES {
@@ -184,24 +180,20 @@ fn non_monotone(findings: &Findings) -> String {
             );
         }
     }
-    let sampled: Vec<&NonMonotone> = { findings.non_monotone.iter() }
-        .filter(of(Search::Sampled))
-        .collect();
-    if !sampled.is_empty() {
+    if findings.non_monotone.iter().any(|of| of.sampled) {
         let title = format!(
             "{on_grid} of {} points, by more than {} % of the range, sampled",
             findings.points,
             100.0 * LEAST_TURN
         );
         text += &section(&title, rows, ripples);
+    } else if !findings.non_monotone.is_empty() {
+        text += &format!("{on_grid}: not looked for, it has too many points\n");
     }
-    for of in findings.non_monotone.iter().filter(|of| of.why.is_some()) {
-        let searched = match of.search {
-            Search::None => "not looked for: the grid has too many points; ",
-            _ => "",
-        };
-        let why = of.why.as_deref().unwrap_or_default();
-        text += &format!("{}: {searched}no table: {why}\n", of.output);
+    for of in &findings.non_monotone {
+        if let Some(why) = &of.why {
+            text += &format!("{}: no table: {why}\n", of.output);
+        }
     }
     text
 }
@@ -232,21 +224,25 @@ fn errors(findings: &Findings) -> String {
             continue;
         }
         for (i, (place, class)) in errors.shown().enumerate() {
+            let measured = |text: String| match class.points {
+                0 => "–".to_owned(),
+                _ => text,
+            };
             text.add_row([
                 Cell::new(if i == 0 { errors.output.as_str() } else { "" }),
                 right(SHOWN_STRENGTHS[place]),
                 right(class.points),
-                right(format!("{:.1e}", class.rms)),
-                right(format!("{:.1e}", class.greatest)),
-                right(share(class.greatest / span)),
-                Cell::new(class.at_text.replace(", ", "\n")),
-                right(format!("{:.1e}", class.nowhere_above)),
+                right(measured(rounded(class.rms))),
+                right(measured(rounded(class.greatest))),
+                right(measured(share(class.greatest / span))),
+                Cell::new(measured(class.at_text.replace(", ", "\n"))),
+                right(rounded(class.nowhere_above)),
                 right(share(class.nowhere_above / span)),
             ]);
         }
         if let Some(bound) = errors.fast_route {
             let mut row = ["", FAST, "", "", "", "", ""].map(Cell::new).to_vec();
-            row.push(right(format!("{bound:.1e}")));
+            row.push(right(rounded(bound)));
             row.push(right(share(bound / span)));
             text.add_row(row);
         }

@@ -14,7 +14,7 @@ use host_sim::fuzzy::lower::lower;
 use host_sim::fuzzy::model::{Defuzzifier, Output, Sampling, System};
 use host_sim::fuzzy::picture;
 use host_sim::plot::{membership_svg, pair};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The format that the result is written in, one that can say what the design computes.
 #[derive(Clone, Copy)]
@@ -22,6 +22,9 @@ enum Language {
     Fll,
     Fcl,
 }
+
+/// Names the pictures.
+const MEMBERSHIPS: &str = "memberships";
 
 /// How the result is written.
 pub struct Written {
@@ -57,6 +60,21 @@ impl Written {
         }
     }
 
+    fn design_file(&self) -> String {
+        format!("tuned.{}", self.format().extension())
+    }
+
+    /// The files that [`Written::write`] makes: the design, the module, the report, and the pictures.
+    pub fn files(&self) -> [String; 5] {
+        [
+            self.design_file(),
+            "tuned.rs".to_owned(),
+            "report.json".to_owned(),
+            format!("{MEMBERSHIPS}.svg"),
+            format!("{MEMBERSHIPS}.png"),
+        ]
+    }
+
     /// What begins a comment.
     fn comment(&self) -> &'static str {
         match self.language {
@@ -90,7 +108,7 @@ impl Written {
         report: &Report,
         how: &str,
     ) -> anyhow::Result<()> {
-        let name = format!("tuned.{}", self.format().extension());
+        let name = self.design_file();
         let (said, _, text) = self.text(tuned)?;
         let text = format!("{} {}: {how}\n{text}", self.comment(), design.title());
         let again = parse(&name, text.as_bytes(), self.format())?;
@@ -128,13 +146,16 @@ impl Written {
         let svg = membership_svg(&format!("{}, tuned", design.title()), &shown)?;
         std::fs::create_dir_all(out)
             .with_context(|| format!("{}: cannot be created", out.display()))?;
-        let [(svg_name, svg), (png_name, png)] = pair("memberships", &svg)?;
-        put_all(&[
-            (&out.join(name), text.as_bytes()),
-            (&out.join("tuned.rs"), module.as_bytes()),
-            (&out.join("report.json"), &json(report)?),
-            (&out.join(svg_name), &svg),
-            (&out.join(png_name), &png),
-        ])
+        let [(_, svg), (_, png)] = pair(MEMBERSHIPS, &svg)?;
+        let files = self.files().map(|file| out.join(file));
+        let contents = [
+            text.as_bytes(),
+            module.as_bytes(),
+            &json(report)?,
+            &svg,
+            &png,
+        ];
+        let files: Vec<(&Path, &[u8])> = files.iter().map(PathBuf::as_path).zip(contents).collect();
+        put_all(&files)
     }
 }
