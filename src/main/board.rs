@@ -9,7 +9,8 @@
 //! | – | `main` | range drivers, stack |
 //!
 //! Each value has one owner: no interrupt waits for a lock. The short ones do not interrupt each other: each is done
-//! within a microsecond or two, a byte takes 22, and the stack has to hold one of them only.
+//! within a microsecond or two, a byte takes 22, and the stack has to hold one of them only (tests/firmware/stack.py adds it
+//! up).
 
 mod bus;
 mod clock;
