@@ -20,7 +20,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 const PROMPT: Duration = Duration::from_millis(100);
 
 /// The first time that a robot does not answer, this is waited; from then on [`SILENT`] a control period.
-const FIRST: Duration = Duration::from_millis(900);
+const FIRST: Duration = Duration::from_millis(600);
 
 /// See [`FIRST`].
 const SILENT: Duration = Duration::from_millis(50);
