@@ -590,7 +590,7 @@ fn a_period_that_the_board_cannot_keep_is_refused_by_its_own_clock() {
             longest_us: 100_000,
         });
         board.pilot.change_params(|params| {
-            params.period = Seconds::from_bits(((millis << 24) / 1000) as i32)
+            params.period = Seconds::from_bits(((millis << 24) / 1000) as i32);
         });
         let pressed = board.pilot.button(board.now_us).map(|_| ());
         assert_eq!(pressed, if kept { Ok(()) } else { refused }, "{millis} ms");
