@@ -4,8 +4,10 @@
     link.py PORT COMMAND ...        PORT: /dev/ttyACM0, tcp:HOST:PORT or unix:PATH
     link.py --self-test             checks this script against tests/golden/link.jsonl
 
+A serial port is opened at 460,800 baud, 8N1, the firmware's rate; --baud N before PORT sets another.
+
 Commands, one after another in one session:
-    status                          how the robot is; works without a session
+    status                          how the robot is, and its encoders' counts; works without a session
     stop                            disarms; works without a session
     hello                           begins a session; disarms
     get ID, set ID VALUE            a setting by its number; VALUE is raw, or 1.5q16, 0.05q24, 20deg
@@ -13,6 +15,8 @@ Commands, one after another in one session:
     begin X Y DEGREES               places the robot there, at the start of its path
     arm                             off it goes
     record                          what the last tick decided
+
+If one of them fails, the rest is left; but a robot that was armed here, or was to be stopped, is stopped.
 """
 
 import argparse
@@ -27,6 +31,7 @@ import time
 import zlib
 
 VERSION = 1
+BAUD = 460800  # the firmware's
 ANSWER_IN = 0.2  # seconds; then the same frame is sent again
 TRIES = 10
 
@@ -57,7 +62,8 @@ TYPES = {
         },
         "State": {
             "armed": "bool", "cause": "Cause", "token": "u32", "uptime_ms": "u32", "tick": "u32", "good": "u32",
-            "overlong": "u16", "truncated": "u16", "corrupt": "u16", "version": "u16", "stack": "u32",
+            "overlong": "u16", "truncated": "u16", "corrupt": "u16", "version": "u16", "stack": "u32", "left": "i32",
+            "right": "i32",
         },
         "Value": {"id": "u16", "value": "i32"},
         "Ack": {},
@@ -270,6 +276,11 @@ class Link:
         self.open = True
         return self.ask({"Hello": {"nonce": nonce, "role": {"Monitor": {}}}})
 
+    def arm(self):
+        if not self.open:
+            self.hello()
+        return self.ask({"Arm": {"token": self.token}})
+
     def within(self, message, parts=1):
         """Asks what needs a session."""
         if not self.open:
@@ -309,42 +320,50 @@ def send_path(link, text):
     return link.ask({"PathEnd": {}})
 
 
-def run(link, words):
-    """Runs the commands and prints each one's answer as a line of JSON."""
-    words = list(words)
+# Commands, how many values each takes, and what it then does.
+COMMANDS = {
+    "hello": (0, lambda link: link.hello()),
+    "status": (0, lambda link: link.ask({"Status": {}})),
+    "stop": (0, lambda link: link.ask({"Stop": {}})),
+    "get": (1, lambda link, number: link.within({"Get": {"id": int(number)}})),
+    "set": (2, lambda link, number, value: link.within({"Set": {"id": int(number), "value": raw(value)}})),
+    "path": (1, send_path),
+    "begin": (3, lambda link, x, y, degrees: link.within({"Begin": {"x": q16(x), "y": q16(y), "heading": turns(degrees)}})),
+    "arm": (0, lambda link: link.arm()),
+    "record": (0, lambda link: unpack_record(link.within({"Record": {}}, parts=3))),
+}
+
+
+def commands(words):
+    """Commands with their values; nothing is sent before all of them are understood."""
+    words, found = list(words), []
     while words:
-        command = words.pop(0)
+        name = words.pop(0)
+        if name not in COMMANDS:
+            raise SystemExit(f"{name}: no such command; see --help")
+        count = COMMANDS[name][0]
+        if len(words) < count:
+            raise SystemExit(f"{name}: {count} values expected, {len(words)} found")
+        found.append((name, words[:count]))
+        del words[:count]
+    return found
 
-        def take(count):
-            if len(words) < count:
-                raise SystemExit(f"{command}: {count} values expected, {len(words)} found")
-            return [words.pop(0) for _ in range(count)]
 
-        if command == "hello":
-            answer = link.hello()
-        elif command == "status":
-            answer = link.ask({"Status": {}})
-        elif command == "stop":
-            answer = link.ask({"Stop": {}})
-        elif command == "get":
-            answer = link.within({"Get": {"id": int(take(1)[0])}})
-        elif command == "set":
-            number, value = take(2)
-            answer = link.within({"Set": {"id": int(number), "value": raw(value)}})
-        elif command == "path":
-            answer = send_path(link, take(1)[0])
-        elif command == "begin":
-            x, y, degrees = take(3)
-            answer = link.within({"Begin": {"x": q16(x), "y": q16(y), "heading": turns(degrees)}})
-        elif command == "arm":
-            if not link.open:
-                link.hello()
-            answer = link.ask({"Arm": {"token": link.token}})
-        elif command == "record":
-            answer = unpack_record(link.within({"Record": {}}, parts=3))
-        else:
-            raise SystemExit(f"{command}: no such command; see --help")
-        print(json.dumps({command: answer}), flush=True)
+def run(link, todo):
+    """Runs the commands and prints each one's answer as a line of JSON. If one fails, the robot is stopped all the same if
+    it was armed here or was to be stopped."""
+    armed = False
+    for at, (name, values) in enumerate(todo):
+        armed = armed or name == "arm"
+        try:
+            answer = COMMANDS[name][1](link, *values)
+        except BaseException:
+            if name != "stop" and (armed or any(later == "stop" for later, _ in todo[at + 1:])):
+                print(json.dumps({"stop": link.ask({"Stop": {}})}), flush=True)
+            raise
+        if name == "stop":
+            armed = False
+        print(json.dumps({name: answer}), flush=True)
 
 
 # ---- self-test ----
@@ -374,14 +393,15 @@ def self_test():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--self-test", action="store_true")
-    parser.add_argument("--baud", type=int, default=115200)
+    parser.add_argument("--baud", type=int, default=BAUD, help=f"of a serial port; {BAUD} unless you changed the firmware's")
     parser.add_argument("port", nargs="?")
     parser.add_argument("commands", nargs=argparse.REMAINDER)
     arguments = parser.parse_args()
     if arguments.self_test:
         self_test()
     elif arguments.port and arguments.commands:
-        run(Link(open_port(arguments.port, arguments.baud)), arguments.commands)
+        todo = commands(arguments.commands)
+        run(Link(open_port(arguments.port, arguments.baud)), todo)
     else:
         parser.error("a port and at least one command, or --self-test")
 

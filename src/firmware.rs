@@ -14,7 +14,7 @@ pub mod panel;
 pub mod pipe;
 
 use crate::link::message::{Cause, Why};
-use crate::pilot::{Pilot, State};
+use crate::pilot::{Cadence, Pilot, State};
 use crate::ports::bridge::Motor;
 use crate::ports::ring::{Latest, Sample};
 use crate::ports::wheel_loop::WheelLoop;
@@ -33,8 +33,7 @@ pub const POINTS: usize = 64;
 /// Time between two steps of [`Machine::run`].
 pub const STEP_US: u32 = 5_000;
 
-/// A watchdog waits for a tick this many steps, 100 ms, at least. Where the control period is longer, the steps between
-/// two ticks feed it.
+/// The longest control period by a board's own clock: a watchdog waits for one at least this many steps, 100 ms.
 const PATIENT_STEPS: u16 = 20;
 
 /// After a disarming it takes so many steps until a stall is forgiven: 2 s.
@@ -105,8 +104,7 @@ pub trait Board {
     /// Switches the lamp.
     fn lamp(&mut self, on: bool);
 
-    /// Feeds the watchdog, which must wait for 100 ms at least: a control period is complete, or it is a long one that
-    /// goes on.
+    /// Feeds the watchdog, which must wait for 100 ms at least: a control period is complete.
     fn feed(&mut self);
 
     /// Logs what happened.
@@ -128,6 +126,10 @@ where
         reset: Cause,
     ) -> Self {
         pilot.fault(reset);
+        pilot.keep(Cadence {
+            step_us: STEP_US,
+            longest_us: STEP_US.wrapping_mul(PATIENT_STEPS as u32),
+        });
         Self {
             pilot,
             ports: Ports {
@@ -177,13 +179,11 @@ where
         self.forgive();
         self.turn(now_us);
         self.steps = self.steps.saturating_add(1);
-        let period = steps_of(self.pilot.robot().params().period);
+        // With a longer period it is not driven by this clock; that the program goes on is still seen in time.
+        let period = steps_of(self.pilot.robot().params().period).min(PATIENT_STEPS);
         if self.steps >= period {
             self.steps = 0;
             self.control(now_us);
-            board.feed();
-        } else if period > PATIENT_STEPS {
-            // A tick that hangs ends the steps, too.
             board.feed();
         }
         let state = self.pilot.state();
@@ -199,6 +199,7 @@ where
     #[inline(never)]
     fn turn(&mut self, now_us: u32) {
         let counts = self.ports.encoders.counts();
+        self.pilot.note_counts(counts);
         // A fault is told to the tick by the next command.
         let _ = self.ports.drive.step(now_us, counts);
     }
@@ -222,12 +223,17 @@ where
         self.pilot.state()
     }
 
-    /// Stops the wheels as soon as the robot is disarmed: the next control period, which would, may be a second away.
+    /// Stops the wheels as soon as the robot is disarmed, without waiting for the next control period. Armed, they are
+    /// measured as the odometry measures them.
     fn halt(&mut self) {
         let armed = self.pilot.state() == State::Armed;
-        if core::mem::replace(&mut self.armed, armed) && !armed {
+        let was = core::mem::replace(&mut self.armed, armed);
+        if was && !armed {
             // Both are off as far as they can be; what failed, the next command tells.
             let _ = self.ports.drive.stop();
+        } else if armed && !was {
+            let body = &self.pilot.robot().params().body;
+            self.ports.drive.measure_by(body.metres_per_count);
         }
     }
 

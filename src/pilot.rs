@@ -23,7 +23,8 @@ use crate::link::message::{Cause, Role, Why};
 use crate::link::record::{self, RECORD_BYTES};
 use crate::link::settings;
 use crate::params::Params;
-use crate::ports::{Fault, Ports, RangeSensors, Side, WheelDrive, WheelEncoders};
+use crate::ports::micros::micros;
+use crate::ports::{Fault, Ports, RangeSensors, Side, WheelCounts, WheelDrive, WheelEncoders};
 use crate::signals::{Decision, StopReason, TickRecord, Twist, WheelCommand};
 use crate::tick::Robot;
 use crate::units::{MetresPerSecond, Seconds};
@@ -31,7 +32,8 @@ use arming::Arming;
 use lockstep::Scan;
 use session::{Answer, Session};
 
-/// A tick may come this much later than its period before the robot is disarmed.
+/// A tick may come this long after the last one before the robot is disarmed. Where the period is not shorter, a period and
+/// this.
 pub const GRACE_US: u32 = 200_000;
 
 /// A lock-step session without a frame for this long, by the board's own clock, is over: the robot is its own again.
@@ -69,6 +71,18 @@ struct Core<const N: usize, const SEGMENTS: usize, const POINTS: usize> {
     /// When the desktop was last heard.
     heard_us: u32,
     stack: u32,
+    /// The board's own encoders' last good counts.
+    counts: WheelCounts,
+    cadence: Option<Cadence>,
+}
+
+/// The control periods that a board can keep by its own clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cadence {
+    /// A period is a multiple of this, µs; above 0.
+    pub step_us: u32,
+    /// The longest, µs.
+    pub longest_us: u32,
 }
 
 /// A path that is being sent.
@@ -101,6 +115,8 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
                 uptime_us: 0,
                 heard_us: 0,
                 stack: 0,
+                counts: WheelCounts { left: 0, right: 0 },
+                cadence: None,
             },
         }
     }
@@ -149,6 +165,18 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
     /// Tells what a desktop may ask for: the deepest stack so far, in bytes.
     pub fn note_stack(&mut self, bytes: u32) {
         self.core.stack = bytes;
+    }
+
+    /// Tells what a desktop may ask for: the board's own encoders' counts. A fault leaves them as they were.
+    pub fn note_counts(&mut self, counts: Result<WheelCounts, Fault>) {
+        if let Ok(counts) = counts {
+            self.core.counts = counts;
+        }
+    }
+
+    /// Tells which control periods the board can keep. Others are refused when a run by its own clock is to begin.
+    pub fn keep(&mut self, cadence: Cadence) {
+        self.core.cadence = Some(cadence);
     }
 
     /// Takes one byte from the link. `out` sends a whole frame; it is called at most three times.
@@ -269,9 +297,12 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         Some(record)
     }
 
-    /// Whether no more than a period and [`GRACE_US`] went by since the last tick.
+    /// Whether the last tick is no longer ago than [`GRACE_US`] lets it be.
     fn in_time(&self, now_us: u32) -> bool {
-        let most = micros(self.robot.params().period).saturating_add(GRACE_US);
+        let most = match micros(self.robot.params().period) {
+            ..GRACE_US => GRACE_US,
+            period => period.saturating_add(GRACE_US),
+        };
         self.ticked_us
             .is_none_or(|last| now_us.wrapping_sub(last) <= most)
     }
@@ -305,6 +336,12 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         if self.path.path().is_none() {
             return Err(Why::NoPath);
         }
+        let period = self.robot.params().period;
+        if self.session.role == Role::Monitor && !self.cadence.is_none_or(|c| c.has(period)) {
+            return Err(Why::Setting {
+                id: settings::PERIOD,
+            });
+        }
         self.robot.restart(start).map_err(|error| Why::Setting {
             // Every field that the check names has an id; a test holds that.
             id: settings::id_of(error.field).unwrap_or(0),
@@ -334,9 +371,9 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
     }
 }
 
-/// Whole microseconds; none below zero.
-fn micros(time: Seconds) -> u32 {
-    let bits = u64::from(time.bits().max(0).unsigned_abs());
-    // Below 2^31 · 10^6 / 2^24 < 2^28.
-    (bits.wrapping_mul(1_000_000) >> 24) as u32
+impl Cadence {
+    fn has(self, period: Seconds) -> bool {
+        let period = micros(period);
+        period <= self.longest_us && period.checked_rem(self.step_us) == Some(0)
+    }
 }

@@ -48,7 +48,7 @@
 pub mod analog;
 pub mod bridge;
 pub mod echo;
-mod micros;
+pub(crate) mod micros;
 pub mod quadrature;
 pub mod ring;
 mod sound;

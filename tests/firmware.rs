@@ -2,10 +2,11 @@
 
 use fuzzypilot::firmware::crash;
 use fuzzypilot::firmware::kit;
-use fuzzypilot::firmware::panel::{Button, Lamp};
+use fuzzypilot::firmware::panel::{self, BreakInput, Button, Lamp};
 use fuzzypilot::firmware::pipe::Pipe;
 use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, STEP_US};
-use fuzzypilot::link::message::{Cause, Why};
+use fuzzypilot::link::frame::{self, Decoder, MAX_FRAME};
+use fuzzypilot::link::message::{Cause, ToHost, ToTarget, Why};
 use fuzzypilot::link::settings;
 use fuzzypilot::pilot::State;
 use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
@@ -14,6 +15,7 @@ use fuzzypilot::ports::ring::Sample;
 use fuzzypilot::ports::wheel_loop::WheelLoop;
 use fuzzypilot::ports::{Fault, NoPin, Range};
 use std::cell::Cell;
+use std::collections::VecDeque;
 use std::rc::Rc;
 
 /// A wheel with its motor and encoder: effort, speed, travel; mounted so that forward is `forward`.
@@ -77,6 +79,37 @@ impl QuadratureCounter for Wheel {
 
 type Model = Machine<'static, Wheel, Wheel, NoPin, QuadratureEncoders<Wheel, Wheel>>;
 
+/// A timer with a break input.
+#[derive(Debug, Default)]
+struct Timer {
+    pressed: bool,
+    noted: bool,
+    outputs: bool,
+}
+
+impl Timer {
+    fn press(&mut self, pressed: bool) {
+        self.pressed = pressed;
+        self.noted |= pressed;
+        self.outputs &= !pressed;
+    }
+}
+
+impl BreakInput for Timer {
+    fn pressed(&mut self) -> bool {
+        self.pressed
+    }
+    fn tripped(&mut self) -> bool {
+        self.noted
+    }
+    fn forget(&mut self) {
+        self.noted = self.pressed;
+    }
+    fn enable(&mut self) {
+        self.outputs = !self.pressed;
+    }
+}
+
 /// The board that the machine sees.
 #[derive(Default)]
 struct Bench {
@@ -84,6 +117,10 @@ struct Bench {
     now: u32,
     due: bool,
     samples: Vec<Sample>,
+    /// What comes by the serial port, and what was said to it.
+    heard: VecDeque<u8>,
+    said: Vec<u8>,
+    timer: Timer,
     feeds: u32,
     fed_us: Option<u32>,
     /// Longest time without a feed.
@@ -100,15 +137,21 @@ impl Board for Bench {
         std::mem::take(&mut self.due)
     }
     fn panel(&mut self) -> Panel {
-        self.panel
+        let emergency = panel::emergency(&mut self.timer);
+        Panel {
+            emergency: emergency || self.panel.emergency,
+            ..self.panel
+        }
     }
     fn sample(&mut self) -> Option<Sample> {
         self.samples.pop()
     }
     fn received(&mut self) -> Option<u8> {
-        None
+        self.heard.pop_front()
     }
-    fn send(&mut self, _: &[u8]) {}
+    fn send(&mut self, frame: &[u8]) {
+        self.said.extend(frame);
+    }
     fn stack(&mut self) -> u32 {
         0
     }
@@ -276,6 +319,100 @@ fn the_emergency_stop_stops_and_blocks() {
 }
 
 #[test]
+fn an_emergency_stop_between_two_looks_is_one() {
+    let mut robot = Robot::new(Cause::Boot);
+    robot.run(0.5);
+    robot.press();
+    robot.run(0.5);
+    assert!(robot.board.timer.outputs);
+    assert!(robot.efforts().iter().all(|&effort| effort != 0.0));
+    robot.board.timer.press(true);
+    robot.board.timer.press(false);
+    robot.run(0.005);
+    assert_eq!(robot.state(), State::Disarmed(Cause::Emergency));
+    assert_eq!(robot.efforts(), [0.0; 2]);
+    // The outputs are let drive when there is nothing to drive any more.
+    assert!(!robot.board.timer.outputs);
+    robot.run(0.5);
+    assert!(robot.board.timer.outputs);
+    assert_eq!(robot.state(), State::Disarmed(Cause::Emergency));
+    robot.press();
+    assert_eq!(robot.state(), State::Armed);
+    // Held, it stays one.
+    robot.board.timer.press(true);
+    robot.run(0.5);
+    assert!(!robot.board.timer.outputs);
+    robot.press();
+    assert_eq!(robot.board.refused, [Why::Emergency]);
+}
+
+impl Robot {
+    /// What it answers by a state.
+    fn asked(&mut self, message: &ToTarget<'_>) -> (bool, [i32; 2]) {
+        let mut wire = [0; MAX_FRAME];
+        let frame = frame::encode(1, message, &mut wire).unwrap();
+        self.board.heard.extend(frame.iter());
+        self.machine.run(&mut self.board);
+        let mut decoder = Decoder::new();
+        for byte in std::mem::take(&mut self.board.said) {
+            let Some(Ok(frame)) = decoder.push(byte) else {
+                continue;
+            };
+            if let Some(ToHost::State {
+                armed, left, right, ..
+            }) = frame.parse()
+            {
+                return (armed, [left, right]);
+            }
+        }
+        panic!("no state");
+    }
+}
+
+#[test]
+fn a_wheel_turned_by_hand_is_told() {
+    let mut robot = Robot::new(Cause::Boot);
+    robot.run(0.1);
+    let (_, before) = robot.asked(&ToTarget::Status);
+    // 0.1 m and 0.2 m forward.
+    for _ in 0..20 {
+        for (wheel, metres) in robot.wheels.iter().zip([0.1, 0.2]) {
+            let (effort, speed, travel) = wheel.state.get();
+            let travel = travel + wheel.forward * metres / 20.0;
+            wheel.state.set((effort, speed, travel));
+        }
+        // No further than a step may count.
+        robot.run(0.005);
+    }
+    let (armed, after) = robot.asked(&ToTarget::Status);
+    assert!(!armed);
+    let counted = [after[0] - before[0], after[1] - before[1]];
+    assert!((705..=706).contains(&counted[0]), "{counted:?}");
+    assert!((1410..=1411).contains(&counted[1]), "{counted:?}");
+}
+
+#[test]
+fn the_wheel_loops_measure_as_the_odometry_does() {
+    // A count of twice the length: the same speed is half as many.
+    let speeds = [1, 2].map(|times| {
+        let mut pilot = BoardPilot::new(kit::params(), kit::HOME);
+        let bits = kit::params().body.metres_per_count.to_bits() * times;
+        pilot.change_params(|params| settings::set(params, 3, bits.cast_signed()).unwrap());
+        let mut robot = Robot::with(pilot, Cause::Boot);
+        robot.run(0.5);
+        robot.press();
+        robot.run(1.3);
+        let travel = robot.wheels[0].travel();
+        robot.run(0.2);
+        assert_eq!(robot.state(), State::Armed);
+        (robot.wheels[0].travel() - travel) / 0.2
+    });
+    let [once, twice] = speeds;
+    assert!((0.45..0.55).contains(&once), "{once}");
+    assert!((0.45..0.55).contains(&(twice * 2.0)), "{twice}");
+}
+
+#[test]
 fn a_stalled_wheel_stays_off_for_two_seconds() {
     let mut robot = Robot::new(Cause::Boot);
     robot.run(0.5);
@@ -295,7 +432,17 @@ fn a_stalled_wheel_stays_off_for_two_seconds() {
 
 #[test]
 fn control_periods_follow_the_setting() {
-    for (millis, a_second) in [(20, 50), (50, 20), (100, 10), (5, 200), (7, 200), (8, 100)] {
+    // The watchdog is fed by a control period only; none is longer than 100 ms.
+    for (millis, a_second) in [
+        (20, 50),
+        (50, 20),
+        (100, 10),
+        (5, 200),
+        (7, 200),
+        (8, 100),
+        (250, 10),
+        (1000, 10),
+    ] {
         let mut pilot = BoardPilot::new(kit::params(), kit::HOME);
         let period = ((i64::from(millis) << 24) / 1000) as i32;
         pilot.change_params(|params| settings::set(params, 20, period).unwrap());
@@ -315,6 +462,13 @@ fn no_period_starves_the_watchdog() {
         robot.run(5.0);
         let hungry = robot.board.hungry_us;
         assert!((1..=100_000).contains(&hungry), "{millis} ms: {hungry} µs");
+        // What cannot be kept is not driven.
+        robot.press();
+        let refused: &[Why] = match millis {
+            5 | 20 | 100 => &[],
+            _ => &[Why::Setting { id: 20 }],
+        };
+        assert_eq!(robot.board.refused, refused, "{millis} ms");
     }
 }
 

@@ -364,6 +364,8 @@ fn to_host() -> Vec<ToHost<'static>> {
         corrupt: most as u16,
         version: most as u16,
         stack: most,
+        left: most as i32 / 2,
+        right: if most == 0 { 0 } else { i32::MIN },
     };
     let mut said = vec![
         ToHost::Welcome {

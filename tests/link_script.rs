@@ -1,6 +1,7 @@
 //! `examples/link.py` against a pilot: what was written from the page alone is understood, over a wire that loses frames.
 
 use fuzzypilot::geometry::Pose;
+use fuzzypilot::link::message::Cause;
 use fuzzypilot::pilot::{Pilot, State};
 use fuzzypilot::presets;
 use std::io::{Read, Write};
@@ -55,10 +56,8 @@ fn talk(pilot: Flown, commands: &[&str]) -> Option<(Output, Flown)> {
         pilot
     });
     let output = script(&[&[port.as_str()], commands].concat());
-    if output.is_none() {
-        // Nobody connects: let the server go.
-        drop(TcpStream::connect(&port[4..]));
-    }
+    // If it has not connected, let the server go.
+    drop(TcpStream::connect(&port[4..]));
     let pilot = server.join().unwrap();
     output.map(|output| (output, pilot))
 }
@@ -104,6 +103,80 @@ fn the_script_sets_up_and_arms_a_robot() {
     let (output, pilot) = talk(pilot, &["stop"]).unwrap();
     assert!(lines(&output)[0].contains("\"cause\": {\"StopCommand\": {}}"));
     assert_ne!(pilot.state(), State::Armed);
+}
+
+#[test]
+fn the_script_asks_after_another_session_and_stops_what_it_armed() {
+    let mut pilot = Flown::new(presets::small_robot(), Pose::default());
+    let line = "line 0 0 0 3";
+    // Numbers far ahead of those that the next conversation begins with.
+    for _ in 0..12 {
+        let Some((output, flown)) = talk(pilot, &["path", line, "begin", "0", "0", "0", "status"])
+        else {
+            return;
+        };
+        assert_eq!(lines(&output).len(), 3);
+        pilot = flown;
+    }
+    let (output, pilot) = talk(pilot, &["status"]).unwrap();
+    assert!(lines(&output)[0].contains("\"armed\": false"));
+
+    // A step that is refused is not the last word to a robot that drives.
+    let chain = ["begin", "0", "0", "0", "arm", "get", "9999", "stop"];
+    let (output, pilot) = talk(pilot, &chain).unwrap();
+    assert!(!output.status.success());
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(errors.contains("Get: refused: {\"UnknownId\""), "{errors}");
+    assert_eq!(pilot.state(), State::Disarmed(Cause::StopCommand));
+    // Without a stop in sight either, and not by what fails before it.
+    let (_, pilot) = talk(pilot, &chain[..7]).unwrap();
+    assert_eq!(pilot.state(), State::Disarmed(Cause::StopCommand));
+    let (_, pilot) = talk(pilot, &chain[..5]).unwrap();
+    assert_eq!(pilot.state(), State::Armed);
+    // Whoever mistypes has sent nothing.
+    let (output, pilot) = talk(pilot, &["hello", "stpo"]).unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(errors.starts_with("stpo: no such command"), "{errors}");
+    assert_eq!(pilot.state(), State::Armed);
+    let (output, pilot) = talk(pilot, &["record", "stop"]).unwrap();
+    assert!(!output.status.success());
+    assert_ne!(pilot.state(), State::Armed);
+}
+
+/// One rate on both ends of a serial line, and in what people read.
+#[test]
+fn everybody_names_the_rate_of_the_firmware() {
+    let text = |path: &str| {
+        let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+        std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+    };
+    let firmware = text("src/main/serial.rs");
+    let (_, rate) = firmware.split_once("pub const BAUD: u32 = ").unwrap();
+    let rate = rate.split_once(';').unwrap().0.replace('_', "");
+    assert_eq!(rate.len(), 6, "{rate}");
+    let (thousands, ones) = rate.split_at(3);
+    for (file, says) in [
+        (
+            "host-sim/src/hil/serial.rs",
+            format!("BAUD: u32 = {thousands}_{ones};"),
+        ),
+        ("examples/link.py", format!("BAUD = {rate}  #")),
+        ("examples/link.py", format!("at {thousands},{ones} baud")),
+        (
+            "examples/pico/src/chip.rs",
+            format!("{thousands} {ones} baud"),
+        ),
+        ("docs/link.md", format!("{thousands} {ones} baud")),
+        ("docs/wiring.md", format!("{thousands} {ones} baud")),
+        ("docs/wiring-pico.md", format!("{thousands} {ones} baud")),
+        ("docs/hil.md", rate.clone()),
+    ] {
+        assert!(text(file).contains(&says), "{file} does not say {says}");
+    }
+    if let Some(output) = script(&["--help"]) {
+        let said = lines(&output).join("\n");
+        assert!(said.contains(&format!("{rate} unless")), "{said}");
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use fuzzypilot::link::message::{
 };
 use fuzzypilot::link::record::{self, RECORD_BYTES};
 use fuzzypilot::link::settings;
-use fuzzypilot::pilot::{GRACE_US, Pilot, SILENCE_US, State};
+use fuzzypilot::pilot::{Cadence, GRACE_US, Pilot, SILENCE_US, State};
 use fuzzypilot::ports::{
     Fault, Ports, Range, RangeReading, RangeSensors, Side, WheelCounts, WheelDrive, WheelEncoders,
 };
@@ -478,8 +478,8 @@ fn a_control_loop_that_stood_still_disarms() {
     let mut board = Board::new();
     board.pilot.button(board.now_us).unwrap();
     board.period().expect("a tick");
-    assert!(board.after(PERIOD_US + GRACE_US).is_some());
-    assert_eq!(board.after(PERIOD_US + GRACE_US + 1), None);
+    assert!(board.after(GRACE_US).is_some());
+    assert_eq!(board.after(GRACE_US + 1), None);
     assert_eq!(disarmed(&board.pilot), Cause::Overrun);
     assert!(board.ports.drive.stand());
 }
@@ -533,11 +533,75 @@ fn a_silent_monitor_stops_nothing_and_a_stop_always_does() {
     ));
     assert_eq!(board.period(), None);
     assert!(board.ports.drive.stand());
-    // Nor did it make old frames new.
+    // Nor did it make old frames new; how it is, it tells always.
     assert_eq!(
-        desk.ask(&mut board.pilot, &ToTarget::Status),
+        desk.ask(&mut board.pilot, &ToTarget::Get { id: 1 }),
         Said::Refused(Why::Replayed)
     );
+    let said = desk.ask(&mut board.pilot, &ToTarget::Status);
+    assert!(matches!(said, Said::State { armed: false, .. }), "{said:?}");
+    assert_eq!(
+        desk.ask(&mut board.pilot, &ToTarget::Get { id: 1 }),
+        Said::Refused(Why::Replayed)
+    );
+}
+
+#[test]
+fn the_very_same_stop_stops_again() {
+    let mut board = Board::new();
+    let mut desk = Desk::new();
+    desk.hello(&mut board.pilot, Role::Monitor);
+    let stop = desk.frame(&ToTarget::Stop);
+    desk.deliver(&mut board.pilot, &stop);
+    board.pilot.button(board.now_us).unwrap();
+    assert_eq!(board.pilot.state(), State::Armed);
+    let said = desk.deliver(&mut board.pilot, &stop);
+    assert!(
+        matches!(said[..], [(_, Said::State { armed: false, .. })]),
+        "{said:?}"
+    );
+    assert_eq!(disarmed(&board.pilot), Cause::StopCommand);
+    assert_eq!(board.period(), None);
+    assert!(board.ports.drive.stand());
+    // Its number is taken all the same.
+    let get = ToTarget::Get { id: 45 };
+    let said = desk.ask(&mut board.pilot, &get);
+    assert!(matches!(said, Said::Value { .. }), "{said:?}");
+}
+
+#[test]
+fn a_period_that_the_board_cannot_keep_is_refused_by_its_own_clock() {
+    let refused = Err(Why::Setting {
+        id: settings::PERIOD,
+    });
+    for (millis, kept) in [
+        (5_i64, true),
+        (20, true),
+        (50, true),
+        (100, true),
+        (7, false),
+        (12, false),
+        (105, false),
+        (1000, false),
+    ] {
+        let mut board = Board::new();
+        board.pilot.keep(Cadence {
+            step_us: 5_000,
+            longest_us: 100_000,
+        });
+        board.pilot.change_params(|params| {
+            params.period = Seconds::from_bits(((millis << 24) / 1000) as i32);
+        });
+        let pressed = board.pilot.button(board.now_us).map(|_| ());
+        assert_eq!(pressed, if kept { Ok(()) } else { refused }, "{millis} ms");
+        let mut desk = Desk::new();
+        desk.hello(&mut board.pilot, Role::Monitor);
+        let begun = desk.ask(&mut board.pilot, &BEGIN);
+        assert_eq!(begun == Said::Ack, kept, "{millis} ms: {begun:?}");
+        // In lock-step the clock is the desktop's.
+        desk.hello(&mut board.pilot, Role::Lockstep);
+        assert_eq!(desk.ask(&mut board.pilot, &BEGIN), Said::Ack);
+    }
 }
 
 #[test]
@@ -769,21 +833,16 @@ fn up_to_31_lost_frames_are_bridged() {
     let mut desk = Desk::new();
     desk.hello(&mut pilot, Role::Monitor);
     desk.sequence = desk.sequence.wrapping_add(31);
-    assert!(matches!(
-        desk.ask(&mut pilot, &ToTarget::Status),
-        Said::State { .. }
-    ));
+    let get = ToTarget::Get { id: 45 };
+    let said = desk.ask(&mut pilot, &get);
+    assert!(matches!(said, Said::Value { .. }), "{said:?}");
     desk.sequence = desk.sequence.wrapping_add(32);
-    assert_eq!(
-        desk.ask(&mut pilot, &ToTarget::Status),
-        Said::Refused(Why::Replayed)
-    );
+    let said = desk.ask(&mut pilot, &get);
+    assert_eq!(said, Said::Refused(Why::Replayed));
     // A hello begins anew with any number.
     desk.hello(&mut pilot, Role::Monitor);
-    assert!(matches!(
-        desk.ask(&mut pilot, &ToTarget::Status),
-        Said::State { .. }
-    ));
+    let said = desk.ask(&mut pilot, &get);
+    assert!(matches!(said, Said::Value { .. }), "{said:?}");
 }
 
 #[test]
@@ -1324,8 +1383,8 @@ fn inputs_sent_again_make_good() {
 #[test]
 fn missing_inputs_disarm() {
     for (skipped, cause) in [
-        (4, None),
-        (5, Some(Cause::LinkTimeout)),
+        (3, None),
+        (4, Some(Cause::LinkTimeout)),
         (400, Some(Cause::LinkTimeout)),
     ] {
         let mut bench = Bench::new();

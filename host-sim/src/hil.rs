@@ -33,8 +33,8 @@ use std::time::Duration;
 use target::Target;
 use wire::Wire;
 
-/// No robot is silent for longer than this without the run being ended.
-pub const LONGEST_SILENCE: Duration = Duration::from_millis(1700);
+/// No robot is silent for longer than this without the run being ended: with what is left to do then, in two seconds.
+pub const LONGEST_SILENCE: Duration = Duration::from_millis(1200);
 
 /// Why a robot at the other end of a link is of no use (any more).
 #[derive(Debug, thiserror::Error)]
@@ -125,7 +125,7 @@ pub enum Outage {
         needed: usize,
     },
     /// The robot refused something that it must not refuse.
-    #[error("{wire}: it refused {what}: {why}")]
+    #[error("{wire}: it refused {what}: {why}{}", hint(*why))]
     Refused {
         /// What it leads to.
         wire: String,
@@ -169,6 +169,16 @@ pub enum Outage {
     /// The person at the keyboard has enough.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// What to do about a refusal, where a person at the robot must.
+fn hint(why: Why) -> &'static str {
+    match why {
+        Why::Emergency => {
+            "; release it, or join its input to ground where there is none (docs/hil.md)"
+        }
+        _ => "",
+    }
 }
 
 /// Why nothing was driven.
@@ -222,7 +232,7 @@ pub fn run(
             && let Some((time, after)) = gap.timed_out
             && stops.last().is_none_or(|(last, _)| *last != time)
         {
-            stops.push((time, after - period));
+            stops.push((time, after));
         }
         observe(&seen);
     });

@@ -44,8 +44,19 @@ pub struct Plant {
     time: f64,
 }
 
-/// The motors stop by themselves when a command is late by this much, s: what the drive port's contract asks for.
-pub const COMMAND_TIMEOUT: f64 = 0.2;
+/// The motors stop by themselves so long after their last command, s: what the drive port's contract asks for, and
+/// what the firmware's wheel loop does.
+const COMMAND_TIMEOUT: f64 = 0.2;
+
+/// How long the motors go on with a command, s, when commands are due every `period`, s: one that is not shorter than the
+/// timeout leaves the motors alone for as long, and they stop when the next command is late by the timeout.
+pub fn command_timeout(period: f64) -> f64 {
+    if period < COMMAND_TIMEOUT {
+        COMMAND_TIMEOUT
+    } else {
+        period + COMMAND_TIMEOUT
+    }
+}
 
 /// Integration step within a control period, s.
 const SUBSTEP: f64 = 0.005;

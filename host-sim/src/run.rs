@@ -1,7 +1,7 @@
 //! The loop: plant and sensors around the library's own tick, which is computed here or by a [`Controller`] elsewhere.
 
 use crate::params::params;
-use crate::plant::{COMMAND_TIMEOUT, Plant, PlantSettings};
+use crate::plant::{Plant, PlantSettings, command_timeout};
 use crate::recording::BeamView;
 use crate::robot::beams;
 use crate::scenario::{PathForm, Scenario};
@@ -347,7 +347,7 @@ impl<const N: usize> Bench<N> {
         let ranges = &mut self.ports.ranges;
         ranges.observe(&scenario.world, &self.beams, self.plant.pose);
         let reply = controller.tick(time, &mut self.ports)?;
-        let due = scenario.robot.period + COMMAND_TIMEOUT;
+        let timeout = command_timeout(scenario.robot.period);
         let record = match reply {
             Reply::Tick(record) => {
                 self.progress = si::from_metres(record.guidance.progress);
@@ -364,7 +364,7 @@ impl<const N: usize> Bench<N> {
                     counts,
                     readings: &self.ports.ranges.readings[..self.beams.len().min(N)],
                 }));
-                self.plant.command(self.ports.drive.command, due);
+                self.plant.command(self.ports.drive.command, timeout);
                 Some(record)
             }
             Reply::Lost => {
@@ -373,7 +373,7 @@ impl<const N: usize> Bench<N> {
             }
             Reply::Disarmed(cause) => {
                 self.gap(scenario, time, Some(cause), observe);
-                self.plant.command([0.0; 2], due);
+                self.plant.command([0.0; 2], timeout);
                 None
             }
         };

@@ -1,4 +1,4 @@
-//! The button and the lamp of a robot.
+//! The button, the lamp and the emergency stop of a robot.
 
 use crate::link::message::Cause;
 use crate::pilot::State;
@@ -39,6 +39,34 @@ impl Button {
         let was = self.down.replace(down);
         was == Some(false) && down
     }
+}
+
+/// A PWM timer whose break input is the emergency stop: pressed, it switches the outputs off without the program, and
+/// notes that.
+pub trait BreakInput {
+    /// Whether it is pressed now.
+    fn pressed(&mut self) -> bool;
+
+    /// Whether it has been pressed since [`forget`](Self::forget).
+    fn tripped(&mut self) -> bool;
+
+    /// Forgets that it was pressed; without effect while it is.
+    fn forget(&mut self);
+
+    /// Lets the outputs drive again; without effect while it is pressed.
+    fn enable(&mut self);
+}
+
+/// Looks at the emergency stop every [`STEP_US`](super::STEP_US); whether the robot must be disarmed. However short it was
+/// pressed, it is told once at least, and the outputs drive again a step later: the robot is disarmed by then.
+pub fn emergency(input: &mut impl BreakInput) -> bool {
+    let (pressed, tripped) = (input.pressed(), input.tripped());
+    match (pressed, tripped) {
+        (false, false) => input.enable(),
+        (false, true) => input.forget(),
+        (true, _) => {}
+    }
+    pressed || tripped
 }
 
 /// The robot's state as blinks of one lamp, a second each round:

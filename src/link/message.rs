@@ -171,6 +171,10 @@ pub enum ToHost<'a> {
         version: u16,
         /// Deepest stack so far, bytes; 0 if it does not know.
         stack: u32,
+        /// Cumulative counts of the robot's own encoders, forward positive, as far as they are known; they wrap.
+        left: i32,
+        /// Likewise.
+        right: i32,
     },
     /// A setting.
     Value {
@@ -234,7 +238,7 @@ pub enum Cause {
     Button,
     /// The emergency stop.
     Emergency,
-    /// Lock-step: a period and 200 ms went by without inputs.
+    /// Lock-step: 200 ms went by without inputs; where the period is not shorter, a period and 200 ms.
     LinkTimeout,
     /// Lock-step: inputs for another tick than the next one, or time running backwards.
     Sequence,
@@ -246,7 +250,7 @@ pub enum Cause {
     DriveFault,
     /// The path is over, and the robot stands.
     PathOver,
-    /// The control loop stood still for a period and 200 ms.
+    /// The control loop stood still for as long.
     Overrun,
     /// The supply was too low.
     Brownout,
@@ -265,7 +269,7 @@ impl core::fmt::Display for Cause {
             Self::StopCommand => "stop command",
             Self::Button => "button",
             Self::Emergency => "emergency stop",
-            Self::LinkTimeout => "no inputs for a period and 200 ms",
+            Self::LinkTimeout => "no inputs in time",
             Self::Sequence => "inputs out of sequence",
             Self::NewSession => "new session",
             Self::SettingsChanged => "settings changed",

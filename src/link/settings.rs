@@ -209,6 +209,9 @@ settings! {
     81 "m/s^2"    Q16               => guard.braking;
 }
 
+/// Id of the control period.
+pub const PERIOD: u16 = 20;
+
 /// Id of the number of sensors; the mounts of sensor `i` follow it at `MOUNTS + 1 + 4 · i`: x, y, heading, width.
 pub const MOUNTS: u16 = 256;
 

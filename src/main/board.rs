@@ -9,7 +9,8 @@
 //! | – | `main` | range drivers, stack |
 //!
 //! Each value has one owner: no interrupt waits for a lock. The short ones do not interrupt each other: each is done
-//! within a microsecond or two, a byte takes 22, and the stack has to hold one of them only.
+//! within a microsecond or two, a byte takes 22, and the stack has to hold one of them only (tests/firmware/stack.py adds it
+//! up).
 
 mod bus;
 mod clock;
@@ -31,7 +32,7 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{NVIC, SCB};
 use cortex_m_rt::{entry, exception};
 use encoders::{Left, Right};
-use fuzzypilot::firmware::{self, Board, BoardPilot, Event, Panel, STEP_US, kit};
+use fuzzypilot::firmware::{self, Board, BoardPilot, Event, Panel, STEP_US, kit, panel};
 use fuzzypilot::link::message::Cause;
 use fuzzypilot::ports::bridge::{Bridge, PwmPinsMotor, WhilePwmLow};
 use fuzzypilot::ports::quadrature::QuadratureEncoders;
@@ -331,14 +332,9 @@ impl Board for Chip {
     }
 
     fn panel(&mut self) -> Panel {
-        let emergency = EMERGENCY.read();
-        if !emergency {
-            // The timer's break has switched the outputs off.
-            motors::enable(&self.tim1);
-        }
         Panel {
             button: !BUTTON.read(),
-            emergency,
+            emergency: panel::emergency(&mut motors::Break(&self.tim1, EMERGENCY)),
         }
     }
 

@@ -1,7 +1,9 @@
 //! Motor PWM on timer 1, whose break input is the emergency stop: it switches the outputs off without the program.
 
+use super::gpio::Pin;
 use core::convert::Infallible;
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
+use fuzzypilot::firmware::panel::BreakInput;
 use stm32f4::stm32f411::TIM1;
 
 /// PWM frequency, Hz: above what is heard.
@@ -14,8 +16,8 @@ pub fn start(tim1: &TIM1, clock: u32) -> u16 {
     unsafe {
         tim1.arr()
             .write(|w| w.bits(u32::from(top.saturating_sub(1))));
-        // PWM mode 1 with preload, on both.
-        tim1.ccmr1_output().write(|w| w.bits(0x6868));
+        // PWM mode 1 on both. Without preload: a duty of 0 must hold before the direction pins change, not a period later.
+        tim1.ccmr1_output().write(|w| w.bits(0x6060));
         tim1.ccer().write(|w| w.cc1e().set_bit().cc2e().set_bit());
         // Idle outputs are driven low; a high break input is a stop, and ends with the next `enable` only.
         tim1.bdtr().write(|w| {
@@ -35,9 +37,33 @@ pub fn start(tim1: &TIM1, clock: u32) -> u16 {
     top
 }
 
-/// Lets the outputs drive again; without effect while the break input is high.
-pub fn enable(tim1: &TIM1) {
+fn enable(tim1: &TIM1) {
     tim1.bdtr().modify(|_, w| w.moe().set_bit());
+}
+
+/// The break input, on its pin.
+#[derive(Debug)]
+pub struct Break<'a>(pub &'a TIM1, pub Pin);
+
+impl BreakInput for Break<'_> {
+    fn pressed(&mut self) -> bool {
+        self.1.read()
+    }
+
+    fn tripped(&mut self) -> bool {
+        self.0.sr().read().bif().bit_is_set()
+    }
+
+    fn forget(&mut self) {
+        // Zeros clear, ones do nothing.
+        self.0
+            .sr()
+            .write(|w| unsafe { w.bits(u32::MAX).bif().clear_bit() });
+    }
+
+    fn enable(&mut self) {
+        enable(self.0);
+    }
 }
 
 /// One of the two PWM outputs.

@@ -110,7 +110,7 @@ fn edge() {
     let exti = unsafe { &*EXTI::ptr() };
     let pending = exti.pr().read().bits();
     exti.pr().write(|w| unsafe { w.bits(pending) });
-    for (sensor, pin) in (0..).zip(ECHO) {
+    for (sensor, pin) in (0..).zip(&ECHO) {
         if pending & pin.mask() != 0 {
             // Without room the edge is lost, and the sensor's turn with it.
             EDGES.push(&[sensor, u8::from(pin.read()), t0, t1, t2, t3]);

@@ -119,7 +119,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
             shun: 12,
-            budget: 150,
+            budget: 400,
         },
         heading: HeadingParams {
             least: m!("0.08"),
@@ -154,7 +154,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             patience: 81,
             pause: 20,
             strikes: 8,
-            give_up: 1200,
+            give_up: 1000,
             arrival: m!("0.12"),
         },
         barrier: BarrierParams {

@@ -116,7 +116,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
             },
             ToTarget::Stop => {
                 self.disarm(Cause::StopCommand);
-                Answer::State
+                Answer::Stopped
             }
             ToTarget::Ranges {
                 scan,
@@ -290,7 +290,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
                 record_bytes: RECORD_BYTES as u16,
                 token: self.arming.token(),
             }),
-            Answer::State => say(ToHost::State {
+            Answer::State | Answer::Stopped => say(ToHost::State {
                 armed: self.arming.is_armed(),
                 cause: self.arming.cause(),
                 token: self.arming.token(),
@@ -302,6 +302,8 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
                 corrupt: counters.corrupt,
                 version: counters.version,
                 stack: self.stack,
+                left: self.counts.left,
+                right: self.counts.right,
             }),
             Answer::Value { id, value } => say(ToHost::Value { id, value }),
             Answer::Ack => say(ToHost::Ack),

@@ -12,6 +12,9 @@ pub(super) enum Answer {
     Silence,
     Welcome,
     State,
+    /// The state after a stop. The very same stop once more is acted upon once more: the button may have armed the robot
+    /// since.
+    Stopped,
     Value {
         id: u16,
         value: i32,
@@ -61,16 +64,17 @@ impl Session {
         *self = Self::new();
     }
 
-    /// The answer that was given, if this is the last frame once more.
+    /// The answer that was given, if this is the last frame once more and not to be acted upon again.
     pub fn again(&self, sequence: u8, check: u32) -> Option<Answer> {
-        (self.open && self.last == (sequence, check)).then_some(self.answer)
+        let same = self.open && self.last == (sequence, check);
+        (same && self.answer != Answer::Stopped).then_some(self.answer)
     }
 
-    /// Whether the message may be acted upon. A hello may begin with any number, and a stop is never refused.
+    /// Whether the message may be acted upon. A hello may begin with any number; a stop and a question how it is, which
+    /// changes nothing, are never refused.
     pub fn admits(&self, sequence: u8, message: Option<&ToTarget<'_>>) -> Result<(), Why> {
         match message {
-            Some(ToTarget::Hello { .. } | ToTarget::Stop) => Ok(()),
-            Some(ToTarget::Status) if !self.open => Ok(()),
+            Some(ToTarget::Hello { .. } | ToTarget::Stop | ToTarget::Status) => Ok(()),
             _ if !self.open => Err(Why::NoSession),
             _ if !self.expects(sequence) => Err(Why::Replayed),
             None => Err(Why::Malformed),

@@ -381,14 +381,15 @@ impl<L: Motor, R: Motor, S: OutputPin> Bridge<L, R, S> {
     /// Commands both motors. Both are always attempted; if anything fails, everything goes [`off`](Self::off), and
     /// the first failure is returned.
     pub fn command(&mut self, left: MotorCommand, right: MotorCommand) -> Result<(), BridgeError> {
+        let written = both(self.left.command(left), self.right.command(right));
+        // The chip wakes when its inputs say what it is to do, not what they said before.
         let woken = if self.awake {
             Ok(())
         } else {
             self.standby.set_high().map_err(|_| BridgeError::Standby)
         };
-        let (left, right) = (self.left.command(left), self.right.command(right));
         self.awake = true;
-        let done = woken.and(both(left, right));
+        let done = written.and(woken);
         if done.is_err() {
             let _ = self.off();
         }

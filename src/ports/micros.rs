@@ -19,7 +19,7 @@ pub(super) const fn seconds(us: u32) -> Seconds {
 }
 
 /// From [`Seconds`], rounded; negative counts as zero.
-pub(super) const fn micros(time: Seconds) -> u32 {
+pub(crate) const fn micros(time: Seconds) -> u32 {
     let bits = time.bits();
     if bits <= 0 {
         return 0;

@@ -253,6 +253,12 @@ impl SpeedLoop {
     }
 }
 
+/// Metres a count · 10^6, with 16 fractional bits; below 2^36.
+fn travel(metres_per_count: U0F32) -> i64 {
+    let travel = u64::from(metres_per_count.to_bits()).saturating_mul(1_000_000) >> 16;
+    travel.cast_signed()
+}
+
 fn within(value: i64, bound: i64) -> i64 {
     value.min(bound).max(bound.saturating_neg())
 }
@@ -336,11 +342,9 @@ impl<L: Motor, R: Motor, S: OutputPin> WheelLoop<L, R, S> {
     /// Takes the bridge over; the settings are checked. Writes nothing yet.
     pub fn new(bridge: Bridge<L, R, S>, settings: WheelLoopSettings) -> Result<Self, ParamError> {
         settings.check()?;
-        let travel = u64::from(settings.metres_per_count.to_bits()).saturating_mul(1_000_000) >> 16;
         Ok(Self {
             bridge,
-            // Below 2^36.
-            travel: travel.cast_signed(),
+            travel: travel(settings.metres_per_count),
             timeout_us: micros(settings.timeout),
             stall_us: micros(settings.stall.time),
             settings,
@@ -401,6 +405,11 @@ impl<L: Motor, R: Motor, S: OutputPin> WheelLoop<L, R, S> {
         }
         self.stalled = None;
         self.fault = None;
+    }
+
+    /// Takes another wheel travel a count, above 0: the odometry's may be set while the robot stands.
+    pub fn measure_by(&mut self, metres_per_count: U0F32) {
+        self.travel = travel(metres_per_count);
     }
 
     /// What is wrong since the last step.

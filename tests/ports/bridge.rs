@@ -269,6 +269,10 @@ fn the_standby_pin_wakes_once_and_sleeps_when_off() {
     let log = log.borrow();
     let standby: Vec<_> = log.iter().filter(|(name, _)| *name == "standby").collect();
     assert_eq!(standby, [&("standby", 1), &("standby", 0), &("standby", 1)]);
+    // It wakes to what it is to do.
+    let woken = log.iter().position(|write| *write == ("standby", 1));
+    let driven = |name| log.iter().position(|write| *write == (name, 100));
+    assert!(driven("left") < woken && driven("right") < woken, "{log:?}");
 }
 
 #[test]

@@ -156,6 +156,13 @@ fn emulator(image: Option<&Path>) -> anyhow::Result<Box<dyn Wire>> {
         ))
         .into());
     }
+    if !is_image(&image) {
+        return Err(BadInput(format!(
+            "--image {}: it is no program for ARM (a 32-bit ELF file); `cargo fw` builds the firmware's image",
+            image.display()
+        ))
+        .into());
+    }
     match Qemu::start(&image) {
         Ok(qemu) => Ok(Box::new(qemu)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(BadInput(format!(
@@ -168,6 +175,16 @@ fn emulator(image: Option<&Path>) -> anyhow::Result<Box<dyn Wire>> {
         }
         .into()),
     }
+}
+
+/// Whether a file begins as an ELF file for 32-bit ARM does.
+#[cfg(unix)]
+fn is_image(path: &Path) -> bool {
+    use std::io::Read;
+    let mut head = [0; 20];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
+    // Magic number, 32 bits, little endian; machine 40.
+    read.is_ok() && head.starts_with(b"\x7fELF\x01\x01") && head.ends_with(&[40, 0])
 }
 
 #[cfg(not(unix))]
@@ -221,8 +238,8 @@ fn link(report: &LinkReport) -> String {
         let faults: Vec<String> = faults.map(|(kind, n)| format!("{n} {kind}")).collect();
         rows.push(("faults on purpose", faults.join(", ")));
     }
-    if let Some(overdue) = report.longest_overdue_ms {
-        let text = format!("{overdue:.0} ms after a command was due, at most");
+    if let Some(after) = report.motors_stopped_after_ms {
+        let text = format!("{after:.0} ms after their last command, at most");
         rows.push(("motors stopped by themselves", text));
     }
     for (name, value) in rows {

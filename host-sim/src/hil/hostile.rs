@@ -27,11 +27,21 @@ const HEAR: u64 = 20;
 /// Honest ticks that are recorded to be played back.
 const TICKS: f64 = 10.0;
 
-/// A byte is given this time on the way, so that answers are not waited for behind a queue.
+/// A byte is given this time on the way, so that a robot as fast as its wire has no queue.
 const BYTE: Duration = Duration::from_micros(40);
 
 /// Good frames within which a robot must be heard again.
 pub const MOST_GOOD: u32 = 5;
+
+/// A good frame that is not answered by then is followed by the next. How many it took, the answers' order tells, not the
+/// time: a robot that is behind answers later.
+const NEXT_GOOD: Duration = Duration::from_millis(200);
+
+/// One that has not answered by then, with everything before it to be read, does not hear.
+const LAST_ANSWER: Duration = Duration::from_secs(10);
+
+/// A robot that says nothing for this long has nothing more to say to what it has read.
+const QUIET: Duration = Duration::from_millis(50);
 
 /// What came of it: `hostile.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -203,35 +213,44 @@ impl Attack {
     fn hear(&mut self) -> Result<(), Outage> {
         let until = self.line.now() + BYTE * std::mem::take(&mut self.on_the_way);
         while let Some((_, answer)) = self.line.next(until)? {
-            match answer {
-                Answer::Part(..) => return Err(self.failed("it drove a tick".to_owned())),
-                Answer::State(state) if state.armed => {
-                    return Err(self.failed("it is armed".to_owned()));
-                }
-                _ => {}
-            }
+            self.judge(&answer)?;
         }
         Ok(())
     }
 
+    /// Nothing that hostile frames may lead to is a tick or an armed robot.
+    fn judge(&self, answer: &Answer) -> Result<(), Outage> {
+        match answer {
+            Answer::Part(..) => Err(self.failed("it drove a tick".to_owned())),
+            Answer::State(state) if state.armed => Err(self.failed("it is armed".to_owned())),
+            _ => Ok(()),
+        }
+    }
+
     /// Looks at the robot, and leaves it set up, placed and disarmed.
     fn check(&mut self) -> Result<(), Outage> {
-        let mut good = 0;
-        let state = loop {
-            good += 1;
+        self.hear_out()?;
+        let mut asked = Vec::new();
+        let good = loop {
             // No retries, and nothing that would end a broken frame but a frame.
             let nonce = self.dice.random();
             let role = Role::Lockstep;
-            let sequence = self.line.send(&ToTarget::Hello { nonce, role })?;
-            if self.answer(sequence)?.is_some() {
-                let sequence = self.line.send(&ToTarget::Status)?;
-                if let Some(Answer::State(state)) = self.answer(sequence)? {
-                    break state;
-                }
+            asked.push(self.line.send(&ToTarget::Hello { nonce, role })?);
+            let last = asked.len() >= MOST_GOOD as usize;
+            let patience = if last { LAST_ANSWER } else { NEXT_GOOD };
+            // Answers come in the order of questions: the first is that of the first frame that was heard.
+            if let Some(first) = self.welcome(&asked, patience)? {
+                break first as u32 + 1;
             }
-            if good >= MOST_GOOD {
+            if last {
+                let good = asked.len();
                 return Err(self.failed(format!("it did not hear {good} good frames")));
             }
+        };
+        // The rest of them are answered before this.
+        let sequence = self.line.send(&ToTarget::Status)?;
+        let Some(Answer::State(state)) = self.line.wait(sequence, LAST_ANSWER)? else {
+            return Err(self.failed("it did not say how it is".to_owned()));
         };
         if state.armed {
             return Err(self.failed("it is armed".to_owned()));
@@ -259,11 +278,29 @@ impl Attack {
         Ok(())
     }
 
-    fn answer(&mut self, sequence: u8) -> Result<Option<Answer>, Outage> {
-        let until = self.line.now() + Duration::from_millis(500);
+    /// Waits until it has answered what it has read so far.
+    fn hear_out(&mut self) -> Result<(), Outage> {
+        let end = self.line.now() + LAST_ANSWER;
+        loop {
+            let until = self.line.now() + QUIET;
+            match self.line.next(until)? {
+                Some((_, answer)) => self.judge(&answer)?,
+                None => return Ok(()),
+            }
+            if self.line.now() >= end {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Waits for an answer to a hello; to which of those asked.
+    fn welcome(&mut self, asked: &[u8], patience: Duration) -> Result<Option<usize>, Outage> {
+        let until = self.line.now() + patience;
         while let Some((answered, answer)) = self.line.next(until)? {
-            if answered == sequence && !matches!(answer, Answer::Refused(_)) {
-                return Ok(Some(answer));
+            self.judge(&answer)?;
+            let which = asked.iter().position(|sequence| *sequence == answered);
+            if let (Some(which), Answer::Welcome(_)) = (which, answer) {
+                return Ok(Some(which));
             }
         }
         Ok(None)

@@ -14,6 +14,9 @@ pub const AGAIN: Duration = Duration::from_millis(200);
 /// The longest wait without a look around.
 const GLANCE: Duration = Duration::from_millis(50);
 
+/// What has come by the end of a wait is still read for this long; who never stops sending is not waited for.
+const LEFTOVERS: Duration = Duration::from_millis(50);
+
 /// Set when the program is to end: every wait ends soon.
 pub static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
@@ -102,6 +105,7 @@ impl From<ToHost<'_>> for Answer {
                 corrupt,
                 version,
                 stack,
+                ..
             } => Self::State(State {
                 armed,
                 cause,
@@ -270,10 +274,15 @@ impl Line {
             };
             self.traffic.received_bytes += count as u64;
             self.inbox.extend(bytes.iter().take(count));
-            if count == 0 && now >= until {
+            if now >= until && (count == 0 || self.is_over(until)) {
                 return Ok(None);
             }
         }
+    }
+
+    /// Whether a wait until then has lasted too long, even if there is something to read.
+    pub fn is_over(&self, until: Duration) -> bool {
+        self.wire.now() >= until + LEFTOVERS
     }
 
     /// Asks, and asks again, until there is an answer or `patience` is over.
@@ -296,7 +305,12 @@ impl Line {
                     self.traffic.round_trips += 1;
                     return Ok(Some(answer));
                 }
-                Some(_) => self.traffic.late += 1,
+                Some(_) => {
+                    self.traffic.late += 1;
+                    if self.is_over(end) {
+                        return Ok(None);
+                    }
+                }
                 None if self.wire.now() >= end => return Ok(None),
                 None => {
                     self.send_again()?;

@@ -90,8 +90,8 @@ pub struct LinkReport {
     pub faults: Vec<(String, u64)>,
     /// What happened, in the order of time; the first [`MAX_EVENTS`] of it.
     pub events: Vec<Event>,
-    /// Longest time by which motors that stopped by themselves had waited for a command that was due, ms.
-    pub longest_overdue_ms: Option<f64>,
+    /// Longest time after their last command at which motors stopped by themselves, ms.
+    pub motors_stopped_after_ms: Option<f64>,
 }
 
 /// More events are not kept.
@@ -122,12 +122,12 @@ impl LinkReport {
         }
     }
 
-    /// Takes over when the motors stopped by themselves, and how long after a command was due, s.
+    /// Takes over when the motors stopped by themselves, and how long after their last command, s.
     pub fn motors(&mut self, stops: &[(f64, f64)]) {
-        for (time, overdue) in stops {
+        for (time, after) in stops {
             self.event(*time, "motors stopped by themselves");
-            let worst = self.longest_overdue_ms.unwrap_or(0.0);
-            self.longest_overdue_ms = Some(worst.max(overdue * 1e3));
+            let worst = self.motors_stopped_after_ms.unwrap_or(0.0);
+            self.motors_stopped_after_ms = Some(worst.max(after * 1e3));
         }
         self.events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
     }

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 const PROMPT: Duration = Duration::from_millis(100);
 
 /// The first time that a robot does not answer, this is waited; from then on [`SILENT`] a control period.
-const FIRST: Duration = Duration::from_millis(1000);
+const FIRST: Duration = Duration::from_millis(600);
 
 /// See [`FIRST`].
 const SILENT: Duration = Duration::from_millis(50);
@@ -125,11 +125,17 @@ pub fn check<const N: usize>(
     params: &Params<N>,
     path: &OwnedPath,
 ) -> Result<(), Outage> {
-    if welcome.firmware != OWN || usize::from(welcome.record_bytes) != RECORD_BYTES {
+    let records = usize::from(welcome.record_bytes);
+    if welcome.firmware != OWN || records != RECORD_BYTES {
+        let of = |firmware, bytes: usize| match welcome.firmware == OWN {
+            // It was built from another source of the same version.
+            true => format!("{} with records of {bytes} bytes", version(firmware)),
+            false => version(firmware),
+        };
         return Err(Outage::Firmware {
             wire,
-            found: version(welcome.firmware),
-            own: version(OWN),
+            found: of(welcome.firmware, records),
+            own: of(OWN, RECORD_BYTES),
         });
     }
     let (what, room, needed) = match path {
@@ -494,7 +500,11 @@ impl Target {
         let mut probe = None;
         let end = self.line.now() + FIRST.min(self.line.patience());
         loop {
-            let Some((answered, answer)) = self.line.next(until)? else {
+            let heard = match self.line.is_over(end) {
+                true => None,
+                false => self.line.next(until)?,
+            };
+            let Some((answered, answer)) = heard else {
                 if self.line.now() >= end {
                     self.owed = probe;
                     return self.lost(time, "no answer");

@@ -11,6 +11,7 @@ pub mod counts;
 pub mod digests;
 pub mod engine;
 pub mod exact;
+pub mod firmware;
 pub mod footprint;
 pub mod machine;
 pub mod navigation;

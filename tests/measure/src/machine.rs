@@ -205,6 +205,14 @@ impl Outcome {
     }
 }
 
+/// The folder that this program was built in: `target/release/…` leads to `target`.
+pub(crate) fn build_folder() -> anyhow::Result<PathBuf> {
+    let here = std::env::current_exe()?;
+    let mut above = here.ancestors();
+    let folder = above.find(|folder| folder.join("CACHEDIR.TAG").is_file());
+    Ok(folder.context("the build folder was not found")?.to_owned())
+}
+
 /// The images, built.
 #[derive(Clone, Debug)]
 pub struct Images {
@@ -223,14 +231,9 @@ impl Images {
     }
 
     fn build_with(choice: &[&str]) -> anyhow::Result<Self> {
-        // Beside this program: `target/release/…` leads to `target/replica`.
-        let here = std::env::current_exe()?;
-        let folder = here
-            .ancestors()
-            .find(|folder| folder.join("CACHEDIR.TAG").is_file())
-            .context("the build folder was not found")?
-            .join("replica");
-        let images = Self { folder };
+        let images = Self {
+            folder: build_folder()?.join("replica"),
+        };
         for machine in &MACHINES {
             let status = images
                 .command(machine)

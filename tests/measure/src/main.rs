@@ -6,7 +6,7 @@ use comfy_table::{Table, presets::NOTHING};
 use measure::budgets::{Budgets, Measured, readme};
 use measure::counts::{COUNTED, count};
 use measure::machine::{Images, MACHINES, Missing};
-use measure::{clock, digests, engine, exact, footprint, navigation, suite, systems};
+use measure::{clock, digests, engine, exact, firmware, footprint, navigation, suite, systems};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -114,12 +114,17 @@ fn budgets(write: bool) -> anyhow::Result<()> {
         }
     }
     println!("{}", report(measured.iter().chain(&others)));
+    let whole = firmware::whole()?;
+    println!(
+        "the F411's whole image: {} bytes of flash, {} of static memory, {} of stack at the deepest that can be",
+        whole.footprint.flash, whole.footprint.ram, whole.stack
+    );
     let mut budgets = Budgets::read()?;
-    let misfits = budgets.check(&measured, write);
+    let misfits = budgets.check(&measured, whole, write);
     for misfit in &misfits {
         println!("{misfit}");
     }
-    let table = budgets.table(&measured)?;
+    let table = budgets.table(&measured, whole)?;
     if write {
         budgets.write()?;
         return readme(&table, true);

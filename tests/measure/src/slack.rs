@@ -1,4 +1,5 @@
-//! When a budget fits: what is measured is not over it, and not so far below that the budget says nothing.
+//! When a budget fits: what is measured is not over it, and not so far below that the budget says nothing; and when a goal
+//! is met.
 
 /// A budget that does not fit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -6,6 +7,7 @@ pub struct Misfit {
     what: String,
     measured: u32,
     budget: u32,
+    goal: bool,
 }
 
 impl std::fmt::Display for Misfit {
@@ -14,8 +16,11 @@ impl std::fmt::Display for Misfit {
             what,
             measured,
             budget,
+            goal,
         } = self;
-        if measured > budget {
+        if *goal {
+            write!(f, "{what}: {measured} misses its goal of {budget}")
+        } else if measured > budget {
             write!(f, "{what}: {measured} is over its budget of {budget}")
         } else {
             write!(
@@ -37,6 +42,18 @@ pub fn see(what: &str, measured: u32, budget: u32) -> Option<Misfit> {
         what: what.to_owned(),
         measured,
         budget,
+        goal: false,
+    })
+}
+
+/// What is wrong with a goal, if there is one and it is missed.
+pub fn aim(what: &str, measured: u32, goal: Option<u32>) -> Option<Misfit> {
+    let goal = goal.filter(|goal| measured > *goal)?;
+    Some(Misfit {
+        what: what.to_owned(),
+        measured,
+        budget: goal,
+        goal: true,
     })
 }
 
