@@ -31,8 +31,8 @@ impl Tuned {
     /// As the library takes them. Each call leaks some hundred bytes, for the library's tables live for ever.
     pub fn params(&self) -> NavigatorParams<SENSORS> {
         let peaks = Peaks {
-            deflection: self.deflections.map(|peak| peak.to_fixed()),
-            speed: self.speeds.map(|peak| peak.to_fixed()),
+            deflection: self.deflections.map(ToFixed::to_fixed),
+            speed: self.speeds.map(ToFixed::to_fixed),
         };
         let mut params = self.params.clone();
         params.steer.tables = Box::leak(Box::new(peaks.tables()));
