@@ -64,6 +64,6 @@ fn a_watched_tick_shows_every_stage_once_and_changes_nothing() {
         let record = watched.tick_observed(&path, &mut ports(), &mut marks);
         assert_eq!(record, plain.tick(&path, &mut ports()));
         let order: Vec<usize> = marks.0.iter().map(|stage| *stage as usize).collect();
-        assert_eq!(order, [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(order, [0, 1, 2, 3, 4, 5, 6, 7, 8]);
     }
 }
