@@ -15,8 +15,10 @@
 //! heading, and dynamic-window methods (Fox, Burgard and Thrun, *The dynamic window approach*, 1997) in its admissible
 //! speeds.
 
+mod along;
 mod barrier;
 mod digest;
+mod doubt;
 mod escape;
 mod field;
 mod footprint;
@@ -35,6 +37,7 @@ mod supervisor;
 mod trajectory;
 
 pub use barrier::{BarrierParams, Guarded, gate, slow};
+pub use doubt::DoubtParams;
 pub use field::{Field, FieldParams};
 pub use footprint::{Footprint, MAX_VERTICES, Outline};
 pub use heading::{Heading, HeadingParams};
@@ -52,7 +55,7 @@ pub use trajectory::{Brakes, MAX_STEPS, Trajectory};
 
 use crate::behaviour::follower::follow;
 use crate::geometry::{Point, Pose};
-use crate::guide::{Cursor, Path, guide};
+use crate::guide::{Cursor, Path, pace};
 use crate::ports::RangeReading;
 use crate::signals::{Guidance, Twist};
 use crate::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond};
@@ -116,9 +119,6 @@ impl<const N: usize> Default for Navigator<N> {
         Self::new()
     }
 }
-
-/// Ticks without contradiction after which a path counts as free.
-const QUIET: u16 = 5;
 
 /// How far from the middle of the body points are looked at.
 const LOOK: Steps = Steps::lit("2");
@@ -233,7 +233,7 @@ impl<const N: usize> Navigator<N> {
             &supervisor::Situation {
                 path_free: course.free,
                 path_clear: course.clear,
-                admissible: heading.is_some(),
+                admissible: heading.is_some() && !self.must_back_out(p, pose.at, &course),
                 last: self.last,
                 at: pose.at,
                 to_go: course.to_go,
@@ -252,7 +252,7 @@ impl<const N: usize> Navigator<N> {
         }
         probe.mark(Stage::Supervise);
         let manoeuvre = decided.manoeuvre;
-        let wanted = self.behave(setup, manoeuvre, &course, heading.as_ref(), ahead);
+        let wanted = self.behave(setup, task, manoeuvre, &course, heading.as_ref(), ahead);
         probe.mark(Stage::Behave);
         let guarded = self.guard(setup, wanted);
         probe.mark(Stage::Guard);
@@ -301,86 +301,22 @@ impl<const N: usize> Navigator<N> {
         course
     }
 
-    fn along(&mut self, setup: &Setup<N>, path: &Path<'_>, pose: Pose, ahead: Pose) -> Course {
-        let p = &setup.params;
-        let timing = (p.period, p.latency);
-        let guidance = guide(
-            &p.follower,
-            &p.limits,
-            timing,
-            path,
-            &mut self.cursor,
-            pose,
-            self.last,
-        );
-        let speed = Metres::from_bits(self.last.linear.abs().over(p.supervisor.enter_time).bits());
-        let need = p.supervisor.enter + speed;
-        let reach = setup.outline.half_width + Steps::of(p.supervisor.path_margin);
-        let frame = ahead.frame();
-        let spacing = const { Metres::lit("0.2") };
-        let (mut free, mut clear) = (true, true);
-        let mut short = guidance.foot;
-        let mut far = Metres::ZERO;
-        let mut carrot = guidance.foot;
-        let look = const { Metres::lit("2.2") };
-        let mut contradicted = false;
-        // The place ahead that is nearest to the robot, where that is nearer than the cursor.
-        let mut nearest = ((guidance.foot - pose.at).norm_squared(), Metres::ZERO);
-        let mut places = heapless::Vec::<Vector, 16>::new();
-        for place in self.cursor.ahead(path, spacing) {
-            carrot = place.at;
-            if far <= const { Metres::lit("0.7") } {
-                short = place.at;
-            }
-            let away = (place.at - pose.at).norm_squared();
-            if away < nearest.0 {
-                nearest = (away, far);
-            }
-            let body = Vector::of(frame.to_body(place.at));
-            far = far + spacing;
-            if places.push(body).is_err() || far > look {
-                break;
-            }
-        }
-        let mut touched = self.near.touching(&places, reach);
-        far = Metres::ZERO;
-        while touched != 0 {
-            if touched & 1 != 0 {
-                contradicted = true;
-                clear = false;
-                free &= far > need;
-            }
-            touched >>= 1;
-            far = far + spacing;
-        }
-        if nearest.1 > Metres::ZERO {
-            self.cursor.skip(path, nearest.1);
-        }
-        self.quiet = if contradicted {
-            0
-        } else {
-            self.quiet.saturating_add(1)
-        };
-        let close = guidance.cross_track.abs() < const { Metres::lit("0.45") };
-        // A path that nothing contradicts any more is met again soon, without the field.
-        let guided = self.quiet < QUIET;
-        let touching = self.near.clearance() < Steps::of(p.supervisor.leave);
-        Course {
-            carrot: if guided { carrot } else { short },
-            guided,
-            free: free && close && !touching,
-            clear: clear && close && !touching,
-            to_go: guidance.remaining,
-            at_goal: guidance.at_end,
-            guidance: Some(guidance),
-            ..Course::default()
-        }
+    /// Whether the robot came to nothing here before, the way leads back, and there is no room to turn into it: every
+    /// heading ahead would lead on into the dead end.
+    fn must_back_out(&self, p: &NavigatorParams<N>, at: Point, course: &Course) -> bool {
+        const BACK: Angle = Angle::deg("110");
+        course.guided
+            && self.supervisor.stalled_near(&p.supervisor, at)
+            && course.direction.abs().bits() > BACK.bits()
+            && !self.map.can_turn(course.direction)
+            && !self.map.can_turn(-course.direction)
     }
 
     /// The twist that the manoeuvre wants.
     fn behave(
         &mut self,
         setup: &Setup<N>,
+        task: Task<'_>,
         manoeuvre: Manoeuvre,
         course: &Course,
         heading: Option<&Heading>,
@@ -390,9 +326,10 @@ impl<const N: usize> Navigator<N> {
         if manoeuvre != Manoeuvre::Escape {
             self.escape.reset();
         }
-        match (manoeuvre, heading, &course.guidance) {
-            (Manoeuvre::Follow, _, Some(guidance)) => {
+        match (manoeuvre, heading, &course.guidance, task) {
+            (Manoeuvre::Follow, _, Some(guidance), Task::Path(path)) => {
                 self.chosen = ahead.heading;
+                let pace = pace(&p.follower, &p.limits, path, &mut self.cursor, guidance);
                 let mut twist = follow(
                     &setup.fine,
                     &p.follower,
@@ -402,7 +339,7 @@ impl<const N: usize> Navigator<N> {
                     self.last,
                 )
                 .twist;
-                twist.linear = twist.linear.min(approach(course.to_go));
+                twist.linear = twist.linear.min(approach(course.to_go)).min(pace);
                 twist
             }
             (Manoeuvre::Escape, ..) => {
@@ -417,21 +354,30 @@ impl<const N: usize> Navigator<N> {
                 )
             }
             (Manoeuvre::Blocked | Manoeuvre::Arrived, ..) => Twist::REST,
-            (_, Some(heading), _) => {
+            (_, Some(heading), ..) => {
                 self.chosen = ahead.heading + heading.angle;
                 let mut twist = steer::steer(&p.steer, &p.limits, heading, self.near.clearance());
                 twist.linear = twist.linear.min(approach(course.to_go));
                 twist
             }
-            (_, None, _) => turn_toward(course.direction, &self.map),
+            (_, None, ..) => turn_toward(course.direction, &self.map),
         }
     }
 
     /// Barrier and gate.
     fn guard(&self, setup: &Setup<N>, wanted: Twist) -> Guarded {
         let p = &setup.params;
+        let outline = &setup.outline;
         let room = (self.map.left, self.map.right);
-        let fastest = p.limits.speed.min(self.health.cap(&p.health, &setup.eyes));
+        let doubted = p.doubt.cap(
+            &setup.eyes,
+            self.echoes.as_slice(),
+            outline,
+            self.last.linear,
+            p.period + p.latency,
+        );
+        let healthy = self.health.cap(&p.health, &setup.eyes);
+        let fastest = p.limits.speed.min(healthy).min(doubted);
         let wanted = Twist {
             linear: wanted.linear.min(fastest).max(-p.reverse),
             angular: wanted

@@ -345,7 +345,15 @@ fn silence_is_not_free_space() {
 
 /// A standing robot whose cones hear these ranges for some ticks, metres; 0 is nothing. Its navigator and last decision.
 fn hearing(ranges: [f64; 16], ticks: usize) -> (Navigator<16>, NavigationRecord) {
-    let setup = presets::jackal::<16>().setup().unwrap();
+    hearing_with(presets::jackal(), ranges, ticks)
+}
+
+fn hearing_with(
+    params: NavigatorParams<16>,
+    ranges: [f64; 16],
+    ticks: usize,
+) -> (Navigator<16>, NavigationRecord) {
+    let setup = params.setup().unwrap();
     let mut navigator: Navigator<16> = Navigator::new();
     let readings = ranges.map(|range| {
         RangeReading::fresh(if range > 0.0 {
@@ -376,6 +384,26 @@ fn a_dead_cone_ahead_is_found_out_and_caps_the_speed() {
     let (_, record) = hearing(ranges, 60);
     assert_eq!(record.dead, 1 << 2);
     assert!(record.twist.linear > MetresPerSecond::lit("0.9"));
+}
+
+/// An echo 0.7 m away in the cone from 17° to 34°: what made it may stand 0.2 m beside the middle line, where the front
+/// passes, or beyond. A slow robot waits and sees.
+#[test]
+fn a_fast_robot_slows_down_for_what_an_echo_may_mean() {
+    let speed = |fastest: &str, careful: &str| {
+        let mut params = presets::jackal::<16>();
+        params.limits.speed = fastest.parse().map(MetresPerSecond::new).unwrap();
+        params.doubt.careful = careful.parse().map(MetresPerSecond::new).unwrap();
+        let mut ranges = [2.5; 16];
+        ranges[9] = 0.7;
+        let (_, record) = hearing_with(params, ranges, 60);
+        record.twist.linear.get().to_num::<f64>()
+    };
+    let doubting = speed("2", "1");
+    assert!((1.0..1.3).contains(&doubting), "{doubting}");
+    let blind = speed("2", "4");
+    assert!(blind > 1.4, "{blind}");
+    assert_eq!(speed("0.9", "1"), speed("0.9", "4"));
 }
 
 #[test]
@@ -419,6 +447,7 @@ fn settings_that_cannot_be_driven_with_are_named() {
     assert_eq!(refused(|p| p.memory.keep = metres(5.0)), "memory.keep");
     assert_eq!(refused(|p| p.sensors.mounts.truncate(2)), "sensors.mounts");
     assert_eq!(refused(|p| p.field.budget = 0), "field.budget");
+    assert_eq!(refused(|p| p.doubt.braking = I16F16::ZERO), "doubt.braking");
     assert_eq!(
         refused(|p| p.barrier.braking = I16F16::lit("3")),
         "barrier.braking"

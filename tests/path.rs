@@ -314,6 +314,36 @@ fn a_cursor_follows_a_line() {
 }
 
 #[test]
+fn the_next_corner_is_seen_within_reach_and_skipped_to() {
+    let segments = [
+        line(0.0, 0.0, 0.0, 2.0),
+        // 10 degrees are a bend, not a corner.
+        line(2.0, 0.0, 10.0f64.to_radians(), 1.0),
+        line(2.9848, 0.1736, -80.0f64.to_radians(), 3.0),
+    ];
+    let path = Path::segments(&segments, false).unwrap();
+    let mut cursor = Cursor::default();
+    cursor.advance(&path, point(0.5, 0.0), metres(1.0));
+    assert_eq!(cursor.corner_ahead(&path, metres(2.49)), None);
+    let (way, jump) = cursor.corner_ahead(&path, metres(2.51)).unwrap();
+    assert!((f(way) - 2.5).abs() < 1e-3, "{way:?}");
+    let quarter = Angle::QUARTER.bits();
+    assert!(
+        (jump + Angle::QUARTER).abs().bits() < quarter / 10_000,
+        "{jump:?}"
+    );
+    cursor.skip(&path, way);
+    // Behind it, where no other one is.
+    assert_eq!(cursor.corner_ahead(&path, metres(100.0)), None);
+    let fix = cursor.advance(&path, point(2.9848, 0.1736), metres(0.0));
+    assert!((f(fix.progress) - 3.0).abs() < 1e-3, "{fix:?}");
+    // Not beyond an open path's end.
+    cursor.skip(&path, metres(100.0));
+    let fix = cursor.advance(&path, point(0.0, 0.0), metres(0.0));
+    assert_eq!(fix.remaining, Metres::ZERO);
+}
+
+#[test]
 fn a_cursor_never_goes_back_and_never_beyond_its_reach() {
     let points = circle_points(3.0, 60, 0.25, 1.0);
     let segments = [

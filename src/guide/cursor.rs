@@ -4,9 +4,9 @@
 use super::ahead::Ahead;
 use super::local::Local;
 use super::path::{Path, next};
-use super::preview::{Allowed, Preview};
+use super::preview::{Allowed, CORNER, Preview};
 use crate::geometry::{Point, Pose, square};
-use crate::units::{Metres, MetresPerSecond, PerMetre};
+use crate::units::{Angle, Metres, MetresPerSecond, PerMetre};
 use fixed::types::I16F16;
 
 /// The most pieces that one tick looks at. Points closer than a thirty-second of what the robot drives in a tick
@@ -73,18 +73,30 @@ impl Cursor {
     /// Moves on by `way` metres, whatever lies between: for a robot that has left the path and meets it again farther on.
     /// At an open path's end, or after [`LOOK`] pieces, it stays.
     pub fn skip(&mut self, path: &Path<'_>, way: Metres) {
-        let mut left = way.max(Metres::ZERO);
+        let mut along = self.along + way.max(Metres::ZERO);
         for _ in 0..LOOK {
             let local = Local::new(&path.piece(self.piece));
-            let to = (self.along + left).min(local.length);
-            let (place, _) = local.frame(to);
-            let step = to - self.along;
-            self.advance(path, place.at, left);
-            left = left - step;
-            if left <= Metres::ZERO {
+            let Some(next) = next(path, self.piece).filter(|_| along >= local.length) else {
+                self.along = along.min(local.length);
                 break;
-            }
+            };
+            along = along - local.length;
+            self.enter(path, next, local.length);
         }
+    }
+
+    /// Begins a piece, after one of this length.
+    fn enter(&mut self, path: &Path<'_>, piece: usize, length: Metres) {
+        self.along = Metres::ZERO;
+        self.base = self.base + length;
+        self.driven = self.driven.wrapping_add(length.bits());
+        if piece == 0 {
+            self.base = Metres::ZERO;
+            self.laps = self.laps.saturating_add(1);
+        }
+        self.piece = piece;
+        self.preview.reached(piece, self.driven);
+        self.local = Some(Local::new(&path.piece(piece)));
     }
 
     /// Moves on to the place of the path nearest to `place`, at most `reach` metres ahead and never back.
@@ -136,6 +148,25 @@ impl Cursor {
     /// Places along the path ahead, `spacing` apart; the first is the cursor's.
     pub fn ahead<'a>(&self, path: &Path<'a>, spacing: Metres) -> Ahead<'a> {
         Ahead::new(path, self.piece, self.along, spacing)
+    }
+
+    /// Way to the next corner, a jump of the tangent by more than 15°, and the jump, left positive; none within `reach` or
+    /// [`LOOK`] pieces.
+    pub fn corner_ahead(&self, path: &Path<'_>, reach: Metres) -> Option<(Metres, Angle)> {
+        let mut piece = path.piece(self.piece);
+        let mut index = self.piece;
+        let mut way = piece.length() - self.along;
+        for _ in 0..LOOK {
+            let next = next(path, index).filter(|_| way <= reach)?;
+            let after = path.piece(next);
+            let jump = after.start_heading() - piece.end_heading();
+            if jump.abs().bits() > CORNER.bits() {
+                return Some((way, jump));
+            }
+            way = way + after.length();
+            (piece, index) = (after, next);
+        }
+        None
     }
 
     /// Curvature `lead` metres ahead of the cursor.

@@ -13,7 +13,7 @@ const STRIDE: usize = 4;
 const WINDOW: usize = 8;
 
 /// A jump of the tangent by more than this is a corner.
-const CORNER: Angle = Angle::deg("15");
+pub(super) const CORNER: Angle = Angle::deg("15");
 
 /// What the path allows: settings.
 #[derive(Clone, Copy, Debug)]

@@ -174,7 +174,7 @@ impl Memory {
 
     /// Forgets what can be seen again or is far: everything but the near points that no sensor looks at.
     pub fn forget_doubtful<const N: usize>(&mut self, eyes: &Eyes<N>, outline: &Outline) {
-        const NEAR: Steps = Steps::lit("0.5");
+        const NEAR: Steps = Steps::lit("1");
         let (body, forward) = (self.body, self.forward);
         retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);

@@ -1,6 +1,7 @@
 //! The navigator's settings, and what is made of them once before the first tick.
 
 use super::barrier::BarrierParams;
+use super::doubt::DoubtParams;
 use super::field::{Costs, FieldParams};
 use super::footprint::{Footprint, Outline};
 use super::heading::{HeadingParams, Weights};
@@ -33,6 +34,8 @@ pub struct NavigatorParams<const N: usize> {
     pub sensors: RangeSet<N>,
     /// When one of them counts as dead.
     pub health: HealthParams,
+    /// What an echo may still mean to a fast robot.
+    pub doubt: DoubtParams,
     /// Local memory.
     pub memory: MemoryParams,
     /// Polar map.
@@ -97,6 +100,7 @@ impl<const N: usize> NavigatorParams<N> {
         self.footprint.check()?;
         self.sensors.check()?;
         self.field.check()?;
+        self.doubt.check()?;
         let limits = &self.limits;
         let range = |ok, field, allowed| {
             if ok {

@@ -2,14 +2,14 @@
 //! [`NavigatorParams::setup`].
 
 use super::{
-    BarrierParams, FieldParams, Footprint, HeadingParams, HealthParams, MapParams, MemoryParams,
-    NavigatorParams, RangeSet, SteerParams, SupervisorParams,
+    BarrierParams, DoubtParams, FieldParams, Footprint, HeadingParams, HealthParams, MapParams,
+    MemoryParams, NavigatorParams, RangeSet, SteerParams, SupervisorParams,
 };
 use crate::geometry::Point;
-use crate::params::Limits;
+use crate::params::{Follower, Limits};
 use crate::presets::FOLLOWER;
 use crate::tables::clutter::CLUTTER;
-use crate::units::{Angle, MetresPerSecond};
+use crate::units::{Angle, MetresPerSecond, PerMetre};
 
 /// Numbers that are parsed while this compiles: at run time the parser would cost 20 KiB of flash.
 macro_rules! n {
@@ -95,6 +95,10 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             speed: const { MetresPerSecond::lit("0.5") },
             lend: m!("0.7"),
         },
+        doubt: DoubtParams {
+            careful: const { MetresPerSecond::lit("1") },
+            braking: n!("2"),
+        },
         memory: MemoryParams {
             insert: m!("1.157"),
             arc: n!("0.4553"),
@@ -139,7 +143,11 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             yaw_acceleration: n!("5"),
             flank: m!("0.036"),
         },
-        follower: FOLLOWER,
+        // Back on a path a third sooner than where nothing stands.
+        follower: Follower {
+            approach_gain: const { PerMetre::lit("2.7") },
+            ..FOLLOWER
+        },
         supervisor: SupervisorParams {
             enter: m!("0.5375"),
             enter_time: s!("0.3893"),

@@ -248,6 +248,12 @@ impl State {
         }
     }
 
+    /// Whether it made no progress near a place, the last time that it made none.
+    pub fn stalled_near(&self, params: &SupervisorParams, at: Point) -> bool {
+        let near = square(params.progress + params.progress);
+        self.strikes > 0 && (at - self.struck).norm_squared() <= near
+    }
+
     /// The progress watchdog.
     fn watch(&mut self, params: &SupervisorParams, now: &Situation) -> bool {
         if now.to_go < self.least - params.progress || self.least == Metres::MAX {
@@ -258,9 +264,7 @@ impl State {
         if !self.trail.stalls(params, now.at) {
             return false;
         }
-        let elsewhere =
-            (now.at - self.struck).norm_squared() > square(params.progress + params.progress);
-        if self.strikes == 0 || elsewhere {
+        if !self.stalled_near(params, now.at) {
             self.struck = now.at;
             self.strikes = 0;
         }

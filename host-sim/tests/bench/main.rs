@@ -5,6 +5,7 @@ mod command;
 mod contact;
 mod figures;
 mod generated;
+mod promises;
 mod ranges;
 mod runs;
 mod world_files;
