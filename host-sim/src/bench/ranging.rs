@@ -64,6 +64,8 @@ pub struct Ranging {
     pub reach: f64,
     /// Beams of one fan: their common place, first heading and pitch.
     fan: Option<Fan>,
+    /// Which sensors of one place look where.
+    sectors: Option<Sectors>,
     scratch: Vec<Circle>,
     echoes: Vec<f64>,
     /// As the robot reads them.
@@ -96,6 +98,7 @@ impl Ranging {
             },
             reach,
             fan: Fan::of(sensors),
+            sectors: Sectors::of(sensors),
             scratch: Vec::new(),
             echoes: vec![f64::INFINITY; sensors.len()],
             readings: vec![RangeReading::NEVER_SEEN; sensors.len()],
@@ -115,9 +118,32 @@ impl Ranging {
             at: frame.see(c.at),
             radius: c.radius,
         }));
-        match self.fan {
-            Some(fan) => self.sweep(fan),
-            None => {
+        match (self.fan, &self.sectors) {
+            (Some(fan), _) => self.sweep(fan),
+            (None, Some(sectors)) => {
+                for (sensor, echo) in self.sensors.iter().zip(&mut self.echoes) {
+                    *echo = sensor.view.max_range;
+                }
+                let mut heard = 0u64;
+                for circle in &self.scratch {
+                    let mut looking = sectors.looking_at(circle);
+                    while looking != 0 {
+                        let k = looking.trailing_zeros() as usize;
+                        looking &= looking - 1;
+                        let range = self.sensors[k].range(circle, self.specular, self.echoes[k]);
+                        if let Some(range) = range {
+                            self.echoes[k] = range;
+                            heard |= 1 << k;
+                        }
+                    }
+                }
+                for (k, echo) in self.echoes.iter_mut().enumerate() {
+                    if heard >> k & 1 == 0 {
+                        *echo = f64::INFINITY;
+                    }
+                }
+            }
+            (None, None) => {
                 for (sensor, echo) in self.sensors.iter().zip(&mut self.echoes) {
                     *echo = sensor.nearest(&self.scratch, self.specular);
                 }
@@ -213,6 +239,86 @@ impl Fan {
     }
 }
 
+/// The sensors of one place, by the sector that a circle's centre is seen in: most of them look elsewhere.
+#[derive(Clone, Debug)]
+struct Sectors {
+    place: [f64; 2],
+    /// A bit a sensor.
+    looking: [u64; SECTORS],
+    all: u64,
+}
+
+/// Sectors of a turn, eight in each of eight octants: even in the tangent, and not in the angle.
+const SECTORS: usize = 64;
+
+/// A circle of at most this radius, as a share of its distance, is hidden in its sector and this sine beside it.
+const SMALL: f64 = 0.2;
+
+impl Sectors {
+    /// Of up to 64 sensors, if all are in one place.
+    fn of(sensors: &[BeamView]) -> Option<Self> {
+        let first = sensors.first()?;
+        let together = |s: &BeamView| (s.x, s.y) == (first.x, first.y);
+        if sensors.len() > 64 || !sensors.iter().all(together) {
+            return None;
+        }
+        let aside = libm::asin(SMALL) + 1e-6;
+        let mut looking = [0; SECTORS];
+        for (sector, bits) in looking.iter_mut().enumerate() {
+            let [from, to] = bounds(sector);
+            let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0 + aside);
+            for (k, sensor) in sensors.iter().enumerate() {
+                let off = (sensor.heading - middle).rem_euclid(std::f64::consts::TAU);
+                let off = off.min(std::f64::consts::TAU - off);
+                if off <= half + sensor.width / 2.0 {
+                    *bits |= 1 << k;
+                }
+            }
+        }
+        Some(Self {
+            place: [first.x, first.y],
+            looking,
+            all: u64::MAX >> (64 - sensors.len()),
+        })
+    }
+
+    /// The sensors that may see a circle, a bit each.
+    fn looking_at(&self, circle: &Circle) -> u64 {
+        let (x, y) = (circle.at[0] - self.place[0], circle.at[1] - self.place[1]);
+        let small = SMALL * SMALL * (x * x + y * y);
+        if circle.radius * circle.radius > small {
+            return self.all;
+        }
+        self.looking[sector(x, y)]
+    }
+}
+
+/// The sector of a direction.
+fn sector(x: f64, y: f64) -> usize {
+    let (long, short) = (x.abs().max(y.abs()), x.abs().min(y.abs()));
+    let step = ((short / long * 8.0) as usize).min(7);
+    let octant =
+        usize::from(y.abs() > x.abs()) | usize::from(x < 0.0) << 1 | usize::from(y < 0.0) << 2;
+    octant << 3 | step
+}
+
+/// Directions of a sector, the lower one first, rad.
+fn bounds(sector: usize) -> [f64; 2] {
+    let (octant, step) = (sector >> 3, sector & 7);
+    let angle = |step: usize| {
+        let mut angle = libm::atan(step as f64 / 8.0);
+        if octant & 1 != 0 {
+            angle = std::f64::consts::FRAC_PI_2 - angle;
+        }
+        if octant & 2 != 0 {
+            angle = std::f64::consts::PI - angle;
+        }
+        if octant & 4 != 0 { -angle } else { angle }
+    };
+    let [a, b] = [angle(step), angle(step + 1)];
+    [a.min(b), a.max(b)]
+}
+
 impl Sensor {
     fn new(view: BeamView) -> Self {
         let (sin, cos) = libm::sincos(view.heading);
@@ -231,17 +337,22 @@ impl Sensor {
         let mut nearest = self.view.max_range;
         let mut heard = false;
         for circle in circles {
-            let (x, y) = (circle.at[0] - self.view.x, circle.at[1] - self.view.y);
-            let near = nearest + circle.radius;
-            if x * x + y * y > near * near || x * self.cos + y * self.sin < -circle.radius {
-                continue;
-            }
-            let range = self.hit(circle, specular);
-            if range <= nearest {
+            if let Some(range) = self.range(circle, specular, nearest) {
                 (nearest, heard) = (range, true);
             }
         }
         if heard { nearest } else { f64::INFINITY }
+    }
+
+    /// Range of a circle, if that is no farther than the nearest so far.
+    fn range(&self, circle: &Circle, specular: f64, nearest: f64) -> Option<f64> {
+        let (x, y) = (circle.at[0] - self.view.x, circle.at[1] - self.view.y);
+        let near = nearest + circle.radius;
+        if x * x + y * y > near * near || x * self.cos + y * self.sin < -circle.radius {
+            return None;
+        }
+        let range = self.hit(circle, specular);
+        (range <= nearest).then_some(range)
     }
 
     /// Range of the part of a circle inside the cone, m; infinite if there is none, or if it reflects away.
