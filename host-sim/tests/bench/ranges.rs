@@ -78,6 +78,16 @@ proptest! {
         }
     }
 
+    /// Sensors of one place are asked by sectors, others one by one.
+    #[test]
+    fn cones_hear_the_same_whether_they_share_a_place_or_not(pose in pose(), circles in circles()) {
+        let mut sensors = named("cone16").unwrap();
+        let together = look(&sensors, pose, &circles);
+        sensors.push(BeamView { x: 1.0, ..sensors[0] });
+        let apart = look(&sensors, pose, &circles);
+        prop_assert_eq!(&together[..], &apart[..16]);
+    }
+
     #[test]
     fn a_lidar_sees_what_single_rays_hit(pose in pose(), circles in circles()) {
         let sensors = named("lidar720").unwrap();
