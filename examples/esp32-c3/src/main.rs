@@ -7,8 +7,9 @@
 
 use core::convert::Infallible;
 use esp32c3::{GPIO, SYSTIMER};
-use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, STEP_US, kit};
+use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, RANGES, STEP_US, kit};
 use fuzzypilot::link::message::Cause;
+use fuzzypilot::params::Params;
 use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
 use fuzzypilot::ports::ring::Sample;
 use fuzzypilot::ports::wheel_loop::WheelLoop;
@@ -105,6 +106,10 @@ impl Board for Chip {
     }
 
     fn feed(&mut self) {}
+
+    fn own(&mut self, params: &mut Params<RANGES>) {
+        *params = kit::params();
+    }
 
     fn log(&mut self, _: Event) {}
 }

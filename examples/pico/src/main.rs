@@ -321,6 +321,10 @@ impl Board for Chip {
         chip::feed(&self.watchdog);
     }
 
+    fn own(&mut self, params: &mut Params<RANGES>) {
+        *params = self::params();
+    }
+
     /// The link tells.
     fn log(&mut self, _: Event) {}
 }

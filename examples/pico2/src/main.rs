@@ -8,8 +8,9 @@
 
 use core::convert::Infallible;
 use embedded_hal::digital::{InputPin, OutputPin};
-use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, STEP_US, kit};
+use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, RANGES, STEP_US, kit};
 use fuzzypilot::link::message::Cause;
+use fuzzypilot::params::Params;
 use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
 use fuzzypilot::ports::ring::Sample;
 use fuzzypilot::ports::wheel_loop::WheelLoop;
@@ -153,6 +154,10 @@ where
 
     fn feed(&mut self) {
         (self.feed)();
+    }
+
+    fn own(&mut self, params: &mut Params<RANGES>) {
+        *params = kit::params();
     }
 
     fn log(&mut self, _: Event) {}
