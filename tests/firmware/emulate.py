@@ -41,7 +41,7 @@ class Wire(link.Link):
 class Emulator:
     """QEMU with the image in it, its second serial port on a socket."""
 
-    def __init__(self, image, folder):
+    def __init__(self, image, folder, *more):
         qemu = os.environ.get("QEMU") or shutil.which("qemu-system-arm")
         expect(qemu, "qemu-system-arm is missing (Debian: apt-get install qemu-system-arm)")
         self.path, self.writes = f"{folder}/link.sock", f"{folder}/writes.log"
@@ -49,7 +49,7 @@ class Emulator:
             [qemu, "-M", "netduinoplus2", "-display", "none", "-monitor", "none",
              "-semihosting-config", "enable=on,target=native",
              "-serial", "null", "-chardev", f"socket,id=link,path={self.path},server=on,wait=off",
-             "-serial", "chardev:link", "-kernel", image, "-d", "unimp,guest_errors", "-D", self.writes],
+             "-serial", "chardev:link", "-kernel", image, "-d", "unimp,guest_errors", "-D", self.writes, *more],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
     def connect(self):
