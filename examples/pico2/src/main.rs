@@ -120,9 +120,12 @@ where
     }
 
     fn due(&mut self) -> bool {
-        let due = (self.now_us)().wrapping_sub(self.due) >= STEP_US;
+        let now_us = (self.now_us)();
+        let late = now_us.wrapping_sub(self.due);
+        let due = late >= STEP_US;
         if due {
-            self.due = self.due.wrapping_add(STEP_US);
+            // Missed steps are not made up for.
+            self.due = now_us.wrapping_sub(late % STEP_US);
         }
         due
     }
