@@ -91,7 +91,7 @@ TYPES = {
         "UnknownId": {"id": "u16"}, "Setting": {"id": "u16"},
         "NoPath": {}, "Path": {"error": "PathFault"},
         "OutOfSequence": {"expected": "u16"}, "TooMany": {"most": "u16"},
-        "NoRecord": {},
+        "NoRecord": {}, "Foreign": {},
     },
     "PathFault": {"TooShort": {}, "TooMany": {}, "Degenerate": {"piece": "u16"}, "Gap": {"piece": "u16"}},
 }

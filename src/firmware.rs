@@ -14,6 +14,7 @@ pub mod panel;
 pub mod pipe;
 
 use crate::link::message::{Cause, Why};
+use crate::params::Params;
 use crate::pilot::{Cadence, Pilot, State};
 use crate::ports::bridge::Motor;
 use crate::ports::ring::{Latest, Sample};
@@ -107,6 +108,9 @@ pub trait Board {
     /// Feeds the watchdog, which must wait for 100 ms at least: a control period is complete.
     fn feed(&mut self);
 
+    /// Puts the settings back with which the robot was switched on, after a plant's.
+    fn own(&mut self, params: &mut Params<RANGES>);
+
     /// Logs what happened.
     fn log(&mut self, event: Event);
 }
@@ -150,6 +154,9 @@ where
     /// whenever a step is due and whenever a frame has come.
     pub fn run(&mut self, board: &mut impl Board) {
         loop {
+            if self.pilot.is_orphaned() {
+                self.restore(board);
+            }
             if board.due() {
                 self.step(board);
             }
@@ -216,6 +223,13 @@ where
     fn receive(&mut self, byte: u8, now_us: u32, out: &mut impl FnMut(&[u8])) {
         self.pilot.receive(byte, now_us, out);
         self.halt();
+    }
+
+    /// A plant is gone: settings and path are the robot's own again, as they were when it was switched on.
+    #[inline(never)]
+    fn restore(&mut self, board: &mut impl Board) {
+        self.pilot.restore(kit::HOME, |params| board.own(params));
+        kit::lay_path(self.pilot);
     }
 
     /// Whether the robot may move.

@@ -7,7 +7,8 @@
 //!
 //! In the [`Role::Monitor`] the robot drives by the board's ports, and whether a desktop listens does not matter to it.
 //! In the [`Role::Lockstep`] sensors and time come in frames, each tick's record goes back, and the board's own wheels
-//! are commanded to stand.
+//! are commanded to stand. Settings and path are the plant's then: when it is over, nothing arms the robot until the
+//! board has put back its own ([`Pilot::restore`]).
 
 mod arming;
 mod dialogue;
@@ -36,7 +37,8 @@ use session::{Answer, Session};
 /// this.
 pub const GRACE_US: u32 = 200_000;
 
-/// A lock-step session without a frame for this long, by the board's own clock, is over: the robot is its own again.
+/// A lock-step session without a frame for this long, by the board's own clock, is over: the robot is its own again, with
+/// its own settings and path where the board [puts them back](Pilot::restore).
 pub const SILENCE_US: u32 = 10_000_000;
 
 /// A robot with up to `N` range sensors, room for a path of `SEGMENTS` lines and arcs or `POINTS` points, and a link.
@@ -74,6 +76,8 @@ struct Core<const N: usize, const SEGMENTS: usize, const POINTS: usize> {
     /// The board's own encoders' last good counts.
     counts: WheelCounts,
     cadence: Option<Cadence>,
+    /// Settings and path are a plant's, or may be: there was a lock-step session since they were the robot's own.
+    foreign: bool,
 }
 
 /// The control periods that a board can keep by its own clock.
@@ -117,6 +121,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
                 stack: 0,
                 counts: WheelCounts { left: 0, right: 0 },
                 cadence: None,
+                foreign: false,
             },
         }
     }
@@ -160,6 +165,19 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Pilot<N, SEGMEN
     pub fn change_params(&mut self, change: impl FnOnce(&mut Params<N>)) {
         self.core.change();
         change(self.core.robot.params_mut());
+    }
+
+    /// Whether settings and path are those of a lock-step session that is over. The robot does not drive with them
+    /// ([`Why::Foreign`]) until the board has put back its own: [`Pilot::restore`].
+    pub fn is_orphaned(&self) -> bool {
+        self.core.is_orphaned()
+    }
+
+    /// Puts the board's own settings back after a plant, takes the robot to stand at `home`, and forgets the path: the
+    /// board's own is [set](Pilot::set_path) next.
+    pub fn restore(&mut self, home: Pose, own: impl FnOnce(&mut Params<N>)) {
+        self.change_params(own);
+        self.core.restore(home);
     }
 
     /// Tells what a desktop may ask for: the deepest stack so far, in bytes.
@@ -333,6 +351,9 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         if self.arming.is_armed() {
             return Err(Why::NotDisarmed);
         }
+        if self.is_orphaned() {
+            return Err(Why::Foreign);
+        }
         if self.path.path().is_none() {
             return Err(Why::NoPath);
         }
@@ -358,6 +379,18 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         self.disarm(Cause::SettingsChanged);
         self.arming.begun = false;
         self.upload = None;
+    }
+
+    /// Settings are the board's own again.
+    fn restore(&mut self, home: Pose) {
+        self.path.begin_segments(false);
+        self.home = home;
+        self.foreign = false;
+        self.come_home();
+    }
+
+    fn is_orphaned(&self) -> bool {
+        self.foreign && self.session.role == Role::Monitor
     }
 
     /// What the robot believes came from other sensors than those that it has now.

@@ -4,10 +4,11 @@ use fuzzypilot::firmware::crash;
 use fuzzypilot::firmware::kit;
 use fuzzypilot::firmware::panel::{self, BreakInput, Button, Lamp};
 use fuzzypilot::firmware::pipe::Pipe;
-use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, STEP_US};
+use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, RANGES, STEP_US};
 use fuzzypilot::link::frame::{self, Decoder, MAX_FRAME};
-use fuzzypilot::link::message::{Cause, ToHost, ToTarget, Why};
+use fuzzypilot::link::message::{Cause, Counts, PathForm, Role, ToHost, ToTarget, Why};
 use fuzzypilot::link::settings;
+use fuzzypilot::params::Params;
 use fuzzypilot::pilot::State;
 use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
 use fuzzypilot::ports::quadrature::{QuadratureCounter, QuadratureEncoders};
@@ -162,6 +163,10 @@ impl Board for Bench {
         self.hungry_us = self.hungry_us.max(since);
         self.fed_us = Some(self.now);
     }
+    fn own(&mut self, params: &mut Params<RANGES>) {
+        *params = kit::params();
+    }
+
     fn log(&mut self, event: Event) {
         match event {
             Event::State(state) => self.states.push(state),
@@ -347,14 +352,89 @@ fn an_emergency_stop_between_two_looks_is_one() {
 }
 
 impl Robot {
-    /// What it answers by a state.
-    fn asked(&mut self, message: &ToTarget<'_>) -> (bool, [i32; 2]) {
+    /// Sends a message with this sequence number; the answers' bytes.
+    fn tell(&mut self, sequence: u8, message: &ToTarget<'_>) -> Vec<u8> {
         let mut wire = [0; MAX_FRAME];
-        let frame = frame::encode(1, message, &mut wire).unwrap();
+        let frame = frame::encode(sequence, message, &mut wire).unwrap();
         self.board.heard.extend(frame.iter());
         self.machine.run(&mut self.board);
+        std::mem::take(&mut self.board.said)
+    }
+
+    /// A lock-step session: settings, a path to the left and backwards wheels that are none of the robot's own, and ticks.
+    fn in_the_loop(&mut self) {
+        let (id, value) = (
+            3,
+            (kit::params().body.metres_per_count.to_bits() / 3).cast_signed(),
+        );
+        let hello = ToTarget::Hello {
+            nonce: 5,
+            role: Role::Lockstep,
+        };
+        let token = self.token(1, &hello);
+        let path = ToTarget::PathBegin {
+            form: PathForm::Segments,
+            count: 1,
+            closed: false,
+            gaps: false,
+        };
+        let line = ToTarget::PathLine {
+            index: 0,
+            x: 1 << 16,
+            y: 1 << 16,
+            heading: 1 << 30,
+            length: 9 << 16,
+        };
+        let begin = ToTarget::Begin {
+            x: 1 << 16,
+            y: 1 << 16,
+            heading: 1 << 30,
+        };
+        let mounts = ToTarget::Set { id: 256, value: 1 };
+        let set = ToTarget::Set { id, value };
+        let fast = ToTarget::Set {
+            id: 10,
+            value: 3 << 14,
+        };
+        let end = ToTarget::PathEnd;
+        let arm = ToTarget::Arm { token };
+        let messages = [mounts, set, fast, path, line, end, begin, arm];
+        for (message, sequence) in messages.iter().zip(2..) {
+            assert!(!self.tell(sequence, message).is_empty());
+        }
+        assert_eq!(self.state(), State::Armed);
+        for tick in 0..5 {
+            let inputs = ToTarget::Inputs {
+                tick,
+                time_us: 20_000 * (tick + 1),
+                scan: 0,
+                counts: Counts::Known { left: 0, right: 0 },
+            };
+            self.run(0.02);
+            // Three parts of a record.
+            assert!(self.tell(20 + tick as u8, &inputs).len() > 150);
+            assert_eq!(self.efforts(), [0.0; 2]);
+        }
+    }
+
+    /// The token of what is answered by one.
+    fn token(&mut self, sequence: u8, message: &ToTarget<'_>) -> u32 {
         let mut decoder = Decoder::new();
-        for byte in std::mem::take(&mut self.board.said) {
+        let said = self.tell(sequence, message);
+        let answers = said.into_iter().find_map(|byte| match decoder.push(byte) {
+            Some(Ok(frame)) => match frame.parse() {
+                Some(ToHost::Welcome { token, .. } | ToHost::State { token, .. }) => Some(token),
+                _ => None,
+            },
+            _ => None,
+        });
+        answers.expect("a token")
+    }
+
+    /// What it answers by a state.
+    fn asked(&mut self, message: &ToTarget<'_>) -> (bool, [i32; 2]) {
+        let mut decoder = Decoder::new();
+        for byte in self.tell(1, message) {
             let Some(Ok(frame)) = decoder.push(byte) else {
                 continue;
             };
@@ -366,6 +446,66 @@ impl Robot {
             }
         }
         panic!("no state");
+    }
+}
+
+/// After hardware in the loop the button does what it does on a robot that was just switched on: nothing that was sent for
+/// the simulated robot moves the real wheels.
+#[test]
+fn a_plant_leaves_neither_settings_nor_path_to_the_wheels() {
+    let drive = |robot: &mut Robot| {
+        robot.press();
+        let mut efforts = Vec::new();
+        for _ in 0..1000 {
+            robot.run(0.005);
+            efforts.push(robot.efforts());
+        }
+        efforts
+    };
+    let mut fresh = Robot::new(Cause::Boot);
+    fresh.run(1.0);
+    let expected = drive(&mut fresh);
+    type End = fn(&mut Robot);
+    let ends: [(&str, End); 3] = [
+        ("silence", |robot| robot.run(10.5)),
+        ("a monitor", |robot| {
+            let hello = ToTarget::Hello {
+                nonce: 6,
+                role: Role::Monitor,
+            };
+            robot.token(90, &hello);
+        }),
+        ("a stop, then silence", |robot| {
+            robot.token(90, &ToTarget::Stop);
+            robot.run(10.5);
+        }),
+    ];
+    for (what, end) in ends {
+        let mut robot = Robot::new(Cause::Boot);
+        robot.run(0.2);
+        robot.in_the_loop();
+        end(&mut robot);
+        assert!(matches!(robot.state(), State::Disarmed(_)), "{what}");
+        robot.run(1.0);
+        assert_eq!(robot.efforts(), [0.0; 2], "{what}");
+        let efforts = drive(&mut robot);
+        assert_eq!(robot.board.refused, [], "{what}");
+        for (wheel, fresh) in robot.wheels.iter().zip(&fresh.wheels) {
+            let gone = (wheel.travel() - fresh.travel()).abs();
+            assert!(gone < 0.02, "{what}: {} m", wheel.travel());
+        }
+        let fast = |efforts: &[[f64; 2]]| {
+            efforts
+                .as_flattened()
+                .iter()
+                .fold(0.0, |m: f64, e| m.max(e.abs()))
+        };
+        let (own, plant) = (fast(&expected), fast(&efforts));
+        assert!(
+            (own - plant).abs() < 0.1,
+            "{what}: {plant} instead of {own}"
+        );
+        assert_eq!(robot.efforts(), [0.0; 2], "{what}");
     }
 }
 

@@ -418,6 +418,7 @@ fn to_host() -> Vec<ToHost<'static>> {
         Why::OutOfSequence { expected: 128 },
         Why::TooMany { most: 32 },
         Why::NoRecord,
+        Why::Foreign,
     ];
     said.extend(whys.map(|why| ToHost::Refused { why }));
     said

@@ -1,12 +1,16 @@
 //! `examples/link.py` against a pilot: what was written from the page alone is understood, over a wire that loses frames.
 
 use fuzzypilot::geometry::Pose;
+use fuzzypilot::guide::{Path, Segment};
+use fuzzypilot::link::frame::{self, Decoder, MAX_FRAME};
 use fuzzypilot::link::message::Cause;
 use fuzzypilot::pilot::{Pilot, State};
 use fuzzypilot::presets;
+use fuzzypilot::units::Metres;
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Command, Output};
+use std::sync::mpsc;
 use std::thread;
 
 type Flown = Pilot<8, 4, 8>;
@@ -141,6 +145,168 @@ fn the_script_asks_after_another_session_and_stops_what_it_armed() {
     let (output, pilot) = talk(pilot, &["record", "stop"]).unwrap();
     assert!(!output.status.success());
     assert_ne!(pilot.state(), State::Armed);
+}
+
+/// How a robot that does not answer as it should does that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Odd {
+    /// The frame is sound, the message in it is cut short.
+    Malformed,
+    /// Nothing is heard nor said.
+    Silent,
+}
+
+/// A message of any bytes.
+struct Raw<'a>(&'a [u8]);
+
+impl serde::Serialize for Raw<'_> {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeTuple;
+        let mut tuple = to.serialize_tuple(self.0.len())?;
+        for byte in self.0 {
+            tuple.serialize_element(byte)?;
+        }
+        tuple.end()
+    }
+}
+
+/// Serves one conversation; questions with this tag are answered oddly, and told.
+fn serve_oddly(
+    mut stream: TcpStream,
+    pilot: &mut Flown,
+    (tag, odd): (u8, Odd),
+    told: &mpsc::Sender<()>,
+) {
+    let mut decoder = Decoder::new();
+    let (mut frame, mut buffer) = (Vec::new(), [0; 256]);
+    while let Ok(length @ 1..) = stream.read(&mut buffer) {
+        for byte in &buffer[..length] {
+            frame.push(*byte);
+            let sound = match decoder.push(*byte) {
+                None => continue,
+                Some(Err(_)) => None,
+                Some(Ok(sound)) => Some((sound.sequence, sound.message.first().copied())),
+            };
+            let bytes = std::mem::take(&mut frame);
+            if let Some((sequence, first)) = sound
+                && first == Some(tag)
+            {
+                told.send(()).unwrap();
+                if odd == Odd::Malformed {
+                    // A state without its fields.
+                    let mut wire = [0; MAX_FRAME];
+                    let answer = frame::encode(sequence, &Raw(&[1]), &mut wire).unwrap();
+                    stream.write_all(answer).unwrap();
+                }
+                continue;
+            }
+            for byte in bytes {
+                let mut send = |wire: &[u8]| stream.write_all(wire).unwrap();
+                pilot.receive(byte, 0, &mut send);
+            }
+        }
+    }
+}
+
+/// A robot that drives, for it has a path and its button was pressed.
+fn driving() -> Flown {
+    let mut pilot = Flown::new(presets::small_robot(), Pose::default());
+    let line = [Segment::line(Pose::default(), Metres::lit("3"))];
+    pilot
+        .set_path(&Path::segments(&line, false).unwrap())
+        .unwrap();
+    pilot.button(0).unwrap();
+    pilot
+}
+
+/// What the script says, and how the robot is afterwards. Interrupted: by Ctrl-C as soon as it was answered oddly.
+fn talk_oddly(commands: &[&str], odd: (u8, Odd), interrupted: bool) -> Option<(Output, State)> {
+    script(&["--help"])?;
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = format!("tcp:{}", listener.local_addr().unwrap());
+    let (told, hears) = mpsc::channel();
+    let server = thread::spawn(move || {
+        let mut pilot = driving();
+        serve_oddly(listener.accept().unwrap().0, &mut pilot, odd, &told);
+        pilot.state()
+    });
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/link.py");
+    let child = Command::new("python3")
+        .arg(path)
+        .arg(&port)
+        .args(commands)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    if interrupted {
+        hears.recv().unwrap();
+        let id = child.id().to_string();
+        let kill = Command::new("kill").args(["-INT", &id]).status().unwrap();
+        assert!(kill.success());
+    }
+    let output = child.wait_with_output().unwrap();
+    drop(TcpStream::connect(&port[4..]));
+    Some((output, server.join().unwrap()))
+}
+
+/// Whatever goes wrong in a chain, and whether there is a session or not: the robot does not drive on.
+#[cfg(unix)]
+#[test]
+fn an_odd_answer_and_ctrl_c_leave_the_robot_stopped() {
+    const STATUS: u8 = 1;
+    const GET: u8 = 2;
+    let arm = ["begin", "0", "0", "0", "arm", "get", "45"];
+    let cases: [(&[&str], u8, Odd, bool); 5] = [
+        // Neither needs a session, so nothing but the stop disarms it.
+        (&["status", "stop"], STATUS, Odd::Malformed, false),
+        (&["status", "stop"], STATUS, Odd::Silent, true),
+        (&arm, GET, Odd::Malformed, false),
+        (&arm, GET, Odd::Silent, true),
+        (&arm, GET, Odd::Silent, false),
+    ];
+    for (commands, tag, odd, interrupted) in cases {
+        let what = format!("{commands:?} {odd:?} {interrupted}");
+        let Some((output, state)) = talk_oddly(commands, (tag, odd), interrupted) else {
+            return;
+        };
+        assert!(!output.status.success(), "{what}");
+        assert_eq!(state, State::Disarmed(Cause::StopCommand), "{what}");
+    }
+    // A question alone stops nobody.
+    let (_, state) = talk_oddly(&["status"], (STATUS, Odd::Malformed), false).unwrap();
+    assert_eq!(state, State::Armed);
+}
+
+/// What the script sets a serial port to, read at the other end of a pseudo-terminal.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_port_is_opened_at_the_firmwares_rate() {
+    const READ: &str = "
+import os, pty, subprocess, sys, termios, time
+near, far = pty.openpty()
+script = subprocess.Popen([sys.executable, sys.argv[1], *sys.argv[2:], os.ttyname(far), 'status'], stderr=subprocess.DEVNULL)
+before, until = termios.tcgetattr(far), time.monotonic() + 10
+while (now := termios.tcgetattr(far)) == before and time.monotonic() < until:
+    time.sleep(0.01)
+time.sleep(0.2)
+now = termios.tcgetattr(far)
+script.kill()
+names = {getattr(termios, name): name for name in dir(termios) if name[1:].isdigit() and name[0] == 'B'}
+raw = not now[3] & (termios.ECHO | termios.ICANON) and now[2] & termios.CSIZE == termios.CS8 and not now[2] & termios.PARENB
+print(names[now[4]], names[now[5]], raw)
+";
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/link.py");
+    for (arguments, rate) in [(&[][..], "B460800"), (&["--baud", "115200"][..], "B115200")] {
+        let output = Command::new("python3")
+            .args(["-c", READ, path])
+            .args(arguments)
+            .output();
+        if script(&["--help"]).is_none() {
+            return;
+        }
+        assert_eq!(lines(&output.unwrap()), [format!("{rate} {rate} True")]);
+    }
 }
 
 /// One rate on both ends of a serial line, and in what people read.

@@ -212,6 +212,26 @@ impl Desk {
             .token()
     }
 
+    /// A path of one line.
+    fn upload(&mut self, pilot: &mut Flown, length: i32) {
+        let begin = ToTarget::PathBegin {
+            form: PathForm::Segments,
+            count: 1,
+            closed: false,
+            gaps: false,
+        };
+        let line = ToTarget::PathLine {
+            index: 0,
+            x: 0,
+            y: 0,
+            heading: 0,
+            length,
+        };
+        for message in [begin, line, ToTarget::PathEnd] {
+            assert_eq!(self.ask(pilot, &message), Said::Ack);
+        }
+    }
+
     /// A session, the path, the start, armed.
     fn fly(&mut self, pilot: &mut Flown, role: Role) {
         pilot
@@ -1474,8 +1494,54 @@ fn a_lock_step_session_that_falls_silent_is_over() {
     bench.desk.hello(&mut board.pilot, Role::Monitor);
     let said = bench.desk.ask(&mut board.pilot, &ToTarget::Record);
     assert_eq!(said, Said::Refused(Why::NoRecord));
+    assert_foreign(&mut board, &mut bench.desk);
+}
+
+/// Nothing makes the robot drive with what a plant has left; its own settings and path do.
+fn assert_foreign(board: &mut Board, desk: &mut Desk) {
+    let begin = |board: &mut Board, desk: &mut Desk| desk.ask(&mut board.pilot, &BEGIN);
+    assert!(board.pilot.is_orphaned());
+    for _ in 0..2 {
+        assert_eq!(board.pilot.button(board.now_us), Err(Why::Foreign));
+        assert_eq!(begin(board, desk), Said::Refused(Why::Foreign));
+        let token = desk.ask(&mut board.pilot, &ToTarget::Status).token();
+        let said = desk.ask(&mut board.pilot, &ToTarget::Arm { token });
+        assert_eq!(said, Said::Refused(Why::NotBegun));
+        assert_eq!(board.period(), None);
+        assert!(board.ports.drive.stand());
+        // A path alone changes nothing: the settings are the plant's all the same.
+        desk.upload(&mut board.pilot, 2 << 16);
+    }
+    let home = Pose::new(Point::new(Metres::lit("1"), Metres::lit("2")), Angle::ZERO);
+    let own = |params: &mut _| *params = presets::small_robot();
+    board.pilot.restore(home, own);
+    assert!(!board.pilot.is_orphaned() && board.pilot.path().is_none());
+    assert_eq!(board.pilot.button(board.now_us), Err(Why::NoPath));
+    let segments = [Segment::line(home, Metres::lit("3"))];
+    let path = Path::segments(&segments, false).unwrap();
+    board.pilot.set_path(&path).unwrap();
     assert_eq!(board.pilot.button(board.now_us), Ok(State::Armed));
+    assert_eq!(board.pilot.robot().pose(), home);
+    assert_eq!(board.pilot.robot().params(), &presets::small_robot());
     assert_eq!(board.period().expect("a tick").tick, 0);
+}
+
+/// Settings and path of a plant are nothing to the board's own wheels, however the session ends.
+#[test]
+fn nobody_drives_with_what_a_plant_has_left() {
+    let mut board = Board::new();
+    let mut desk = Desk::new();
+    desk.now_us = board.now_us;
+    desk.fly(&mut board.pilot, Role::Lockstep);
+    assert_eq!(board.period(), None);
+    assert!(!board.pilot.is_orphaned());
+    desk.hello(&mut board.pilot, Role::Monitor);
+    assert_foreign(&mut board, &mut desk);
+    // Not by a second plant in between, nor by one that has changed nothing.
+    desk.hello(&mut board.pilot, Role::Lockstep);
+    desk.hello(&mut board.pilot, Role::Lockstep);
+    desk.hello(&mut board.pilot, Role::Monitor);
+    assert_foreign(&mut board, &mut desk);
 }
 
 /// Pose, record and permission of one role are nothing to the other, nor to the next plant.
@@ -1497,7 +1563,10 @@ fn a_plant_leaves_nothing_behind() {
         }
         // A monitor that comes back, however, finds what it left.
         bench.desk.hello(&mut bench.pilot, Role::Monitor);
-        bench.desk.ask(&mut bench.pilot, &BEGIN);
+        let own = |params: &mut _| *params = presets::small_robot();
+        bench.pilot.restore(Pose::default(), own);
+        bench.desk.upload(&mut bench.pilot, 3 << 16);
+        assert_eq!(bench.desk.ask(&mut bench.pilot, &BEGIN), Said::Ack);
         let token = bench.desk.hello(&mut bench.pilot, Role::Monitor);
         let said = bench.desk.ask(&mut bench.pilot, &ToTarget::Arm { token });
         assert!(matches!(said, Said::State { armed: true, .. }), "{said:?}");
@@ -1534,11 +1603,15 @@ fn a_run_begins_where_begin_says() {
     bench.tick = 0;
     let said = bench.period(|frames| frames);
     assert_eq!(said[0].clone().record().tick, 0);
-    bench.desk.hello(&mut bench.pilot, Role::Monitor);
-    assert_eq!(bench.pilot.button(bench.desk.now_us), Ok(State::Armed));
+    // The board's own run, too, begins where its own desktop says.
+    let mut board = Board::new();
+    bench.desk.now_us = board.now_us;
+    bench.desk.hello(&mut board.pilot, Role::Monitor);
+    assert_eq!(bench.desk.ask(&mut board.pilot, &there), Said::Ack);
+    assert_eq!(board.pilot.button(board.now_us), Ok(State::Armed));
     let (x, y) = (Metres::lit("1"), Metres::lit("-2"));
     assert_eq!(
-        bench.pilot.robot().pose(),
+        board.pilot.robot().pose(),
         Pose::new(Point::new(x, y), Angle::QUARTER)
     );
 }
@@ -1726,6 +1799,10 @@ fn hostile_frames_move_nothing_and_are_survived() {
                 // Whatever came before: five good frames, and the robot is armed; a sixth disarms it.
                 board.pilot.receive(0, desk.now_us, &mut |_| {});
                 let token = desk.hello(&mut board.pilot, role);
+                if board.pilot.is_orphaned() {
+                    let own = |params: &mut _| *params = presets::small_robot();
+                    board.pilot.restore(Pose::default(), own);
+                }
                 if board.pilot.path().is_none() {
                     board
                         .pilot

@@ -154,8 +154,8 @@ pub enum Outage {
         /// Why, as it says.
         cause: Cause,
     },
-    /// The robot has disarmed itself, and nobody asked for it to be armed again.
-    #[error("{wire}: it disarmed itself at {time:.2} s of the run: {cause}; {hint}")]
+    /// The robot has disarmed itself or was stopped, and nobody asked for it to be armed again.
+    #[error("{wire}: it was disarmed at {time:.2} s of the run: {cause}; {hint}")]
     Disarmed {
         /// What it leads to.
         wire: String,

@@ -346,6 +346,7 @@ impl<const N: usize> Bench<N> {
         self.ports.encoders.observe(self.plant.travel);
         let ranges = &mut self.ports.ranges;
         ranges.observe(&scenario.world, &self.beams, self.plant.pose);
+        self.ports.drive.timed_out = self.plant.timed_out;
         let reply = controller.tick(time, &mut self.ports)?;
         let timeout = command_timeout(scenario.robot.period);
         let record = match reply {

@@ -33,6 +33,8 @@ pub struct Noise {
 pub struct SimDrive {
     /// Last command left, right, m/s.
     pub command: [f64; 2],
+    /// When the motors last stopped by themselves while they were driven, s, and how long after their last command.
+    pub timed_out: Option<(f64, f64)>,
 }
 
 impl WheelDrive for SimDrive {

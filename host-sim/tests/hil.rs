@@ -65,6 +65,8 @@ fn complaint(output: &std::process::Output) -> String {
 struct Seen {
     driven: Driven,
     rows: Vec<Vec<String>>,
+    /// The ticks' times.
+    times: Vec<f64>,
     gaps: Vec<Gap>,
 }
 
@@ -74,14 +76,18 @@ fn drive(scenario: &Scenario, seed: u64, faults: &[&str], rearm: Option<u32>) ->
     if !faults.is_empty() {
         wire = Box::new(Faulty::new(wire, faults, seed));
     }
-    let (mut rows, mut gaps) = (Vec::new(), Vec::new());
+    let (mut rows, mut times, mut gaps) = (Vec::new(), Vec::new(), Vec::new());
     let driven = host_sim::hil::run(scenario, seed, wire, rearm, &mut |period| match period {
-        Period::Tick(step) => rows.push(ticks::row(step.record)),
+        Period::Tick(step) => {
+            rows.push(ticks::row(step.record));
+            times.push(step.time);
+        }
         Period::Gap(gap) => gaps.push(*gap),
     });
     Seen {
         driven: driven.unwrap_or_else(|e| panic!("{e}")),
         rows,
+        times,
         gaps,
     }
 }
@@ -230,6 +236,40 @@ fn without_answers_the_motors_stop_and_arming_is_required_again() {
                     "{what}: {events:?}"
                 );
             }
+        }
+    }
+}
+
+/// The robot hears everything and is never late, so it does not disarm itself; that its motors have stopped for want of its
+/// answers is no reason to go on by itself.
+#[test]
+fn motors_that_stopped_go_on_after_arming_only() {
+    let scenario = load("one-obstacle").unwrap();
+    for fault in ["from-corrupt:0.3", "from-drop:0.3", "drop:0.15"] {
+        let seen = drive(&scenario, 1, &[fault], None);
+        assert_eq!(seen.driven.ending, Ending::Disarmed, "{fault}");
+        let outage = seen.driven.outage.as_ref().unwrap().to_string();
+        assert!(outage.contains("--rearm"), "{fault}: {outage}");
+        let (stopped, _) = seen.gaps.iter().find_map(|gap| gap.timed_out).unwrap();
+        assert!(seen.times.iter().all(|time| *time < stopped), "{fault}");
+        let last = seen.gaps.last().unwrap();
+        assert_eq!(last.wheels, [0.0; 2], "{fault}: {last:?}");
+
+        let seen = drive(&scenario, 1, &[fault], Some(2));
+        let events = &seen.driven.report.events;
+        let at = |what: &str| -> Vec<f64> {
+            let of = events.iter().filter(|event| event.what == what);
+            of.map(|event| event.time_s).collect()
+        };
+        let (stops, arms) = (at("motors stopped by themselves"), at("armed again"));
+        assert!(stops.len() > 1 && arms.len() > 1, "{fault}: {events:?}");
+        for stop in stops {
+            let driven = seen.times.iter().find(|time| **time > stop);
+            let armed = arms.iter().find(|time| **time > stop);
+            assert!(
+                driven.is_none_or(|driven| armed.is_some_and(|armed| armed <= driven)),
+                "{fault}: stopped at {stop}, driven at {driven:?}, armed at {armed:?}"
+            );
         }
     }
 }

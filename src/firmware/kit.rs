@@ -96,6 +96,7 @@ pub const fn wheels() -> WheelLoopSettings {
 }
 
 /// Gives the pilot its first path, a metre straight on: a first drive needs no desktop.
+#[inline(never)]
 pub fn lay_path(pilot: &mut BoardPilot) {
     let metre = [Segment::line(HOME, const { Metres::lit("1") })];
     if let Ok(path) = Path::segments(&metre, false) {

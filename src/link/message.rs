@@ -337,6 +337,8 @@ pub enum Why {
     },
     /// No tick has been driven yet.
     NoRecord,
+    /// Settings and path are those of a lock-step session that is over, not the robot's own.
+    Foreign,
 }
 
 impl core::fmt::Display for Why {
@@ -362,6 +364,9 @@ impl core::fmt::Display for Why {
             Self::OutOfSequence { expected } => write!(f, "piece {expected} of the path is due"),
             Self::TooMany { most } => write!(f, "too many: at most {most}"),
             Self::NoRecord => f.write_str("no tick yet"),
+            Self::Foreign => {
+                f.write_str("settings and path of a plant: switch the robot off and on")
+            }
         }
     }
 }

@@ -34,6 +34,7 @@ use cortex_m_rt::{entry, exception};
 use encoders::{Left, Right};
 use fuzzypilot::firmware::{self, Board, BoardPilot, Event, Panel, STEP_US, kit, panel};
 use fuzzypilot::link::message::Cause;
+use fuzzypilot::params::Params;
 use fuzzypilot::ports::bridge::{Bridge, PwmPinsMotor, WhilePwmLow};
 use fuzzypilot::ports::quadrature::QuadratureEncoders;
 use fuzzypilot::ports::ring::Sample;
@@ -361,6 +362,20 @@ impl Board for Chip {
 
     fn feed(&mut self) {
         feed(&self.watchdog);
+    }
+
+    /// From where the start copied them, together with all other statics' initial values: room for them once more there
+    /// is not.
+    fn own(&mut self, params: &mut Params<{ firmware::RANGES }>) {
+        unsafe extern "C" {
+            static __sdata: u8;
+            static __sidata: u8;
+        }
+        let own = core::ptr::from_mut(params);
+        let offset = (own as usize).wrapping_sub(&raw const __sdata as usize);
+        let initial = (&raw const __sidata).wrapping_add(offset).cast();
+        // Safety: the pilot is a static with initial values: they lie in flash as it does in RAM. Settings are plain data.
+        unsafe { core::ptr::copy_nonoverlapping(initial, own, 1) };
     }
 
     fn log(&mut self, event: Event) {

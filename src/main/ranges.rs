@@ -82,6 +82,10 @@ impl Ranges {
             self.sonar.edge(sensor.into(), level != 0, at_us);
         }
         if let Some(sample) = self.sonar.poll(now_us()) {
+            // A pin that is stuck has no edges: it is told each time.
+            if let Some(pin) = ECHO.get(sample.index) {
+                self.sonar.edge(sample.index, pin.read(), now_us());
+            }
             post(sample, &ECHOES);
         }
     }

@@ -142,6 +142,7 @@ impl<const N: usize, const SEGMENTS: usize, const POINTS: usize> Core<N, SEGMENT
         if role == Role::Lockstep || self.session.role == Role::Lockstep {
             self.come_home();
         }
+        self.foreign |= role == Role::Lockstep;
         self.session.open(role);
         Answer::Welcome
     }

@@ -68,6 +68,8 @@ const TRIGGER_US: u32 = 10;
 ///
 /// Call [`poll`](Self::poll) every 0.1 to 2 ms. Report the echo pins by [`edge`](Self::edge): best from an interrupt on
 /// both edges or a timer's input capture (1 µs is 0.2 mm); else before each poll, with the pin's level (100 µs are 17 mm).
+/// Who reports edges only reports the pin's level once more after each of its readings, else one that is stuck high is a
+/// [`Fault::Bus`] once and a [`Fault::Timeout`] from then on.
 /// Between `poll` and an interrupt's `edge`, share the ring as your platform shares any state.
 ///
 /// ```

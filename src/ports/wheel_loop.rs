@@ -13,7 +13,7 @@
 //!
 //! | what | wheels | until |
 //! |---|---|---|
-//! | no command for a wheel within `timeout` | rest | both are commanded again |
+//! | no command for a wheel within `timeout`, or up to a step less | rest | both are commanded again |
 //! | high effort and no counts forward: [`WheelFault::Stalled`] | off | [`WheelLoop::clear`] |
 //! | no counts for longer than `timeout`: [`WheelFault::Encoders`] | rest | counts come again |
 //! | an output fails: [`WheelFault::Output`] | off | the next step that works |
@@ -328,7 +328,7 @@ struct Wheel {
     target: MetresPerSecond,
     /// Commanded since the last step.
     fresh: bool,
-    /// When the command was first seen; none is no command.
+    /// When the command came at the earliest; none is no command.
     commanded_us: Option<u32>,
     speed: MetresPerSecond,
     effort: Effort,
@@ -369,7 +369,7 @@ impl<L: Motor, R: Motor, S: OutputPin> WheelLoop<L, R, S> {
         let elapsed = self.stepped_us.replace(now_us);
         let elapsed = elapsed.map_or(0, |last| since(now_us, last));
         let encoders = self.measure(now_us, elapsed, counts);
-        self.expire(now_us);
+        self.expire(now_us, elapsed);
         self.watch(elapsed);
         let result = if let Some(side) = self.stalled {
             self.release();
@@ -476,16 +476,17 @@ impl<L: Motor, R: Motor, S: OutputPin> WheelLoop<L, R, S> {
         Ok(())
     }
 
-    /// Dates new commands; forgets both if either is overdue.
-    fn expire(&mut self, now_us: u32) {
+    /// Dates new commands; forgets both if either is overdue, or would be before another step as long as the last one. A
+    /// command is as old as the step before it at most.
+    fn expire(&mut self, now_us: u32, elapsed: u32) {
         let mut overdue = false;
         for wheel in &mut self.wheels {
             if core::mem::take(&mut wheel.fresh) {
-                wheel.commanded_us = Some(now_us);
+                wheel.commanded_us = Some(now_us.wrapping_sub(elapsed));
             }
             overdue |= wheel
                 .commanded_us
-                .is_none_or(|at| since(now_us, at) > self.timeout_us);
+                .is_none_or(|at| since(now_us, at).saturating_add(elapsed) > self.timeout_us);
         }
         if overdue {
             for wheel in &mut self.wheels {

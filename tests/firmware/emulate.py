@@ -3,7 +3,7 @@
 
 Checked: it starts without a clock tree, GPIO, bus or watchdog and answers; disarmed it never drives a motor; the button,
 which reads as pressed from the start, arms nothing; armed by the link it drives, and after a stop it does not; lock-step
-ticks of 64 noisy sensors are answered; the deepest stack, all this included, is within its budget. Prints the figures.
+ticks of 64 noisy sensors are answered; after them settings and path are the board's own again; the deepest stack, all this included, is within its budget. Prints the figures.
 """
 
 import os
@@ -41,7 +41,7 @@ class Wire(link.Link):
 class Emulator:
     """QEMU with the image in it, its second serial port on a socket."""
 
-    def __init__(self, image, folder):
+    def __init__(self, image, folder, *more):
         qemu = os.environ.get("QEMU") or shutil.which("qemu-system-arm")
         expect(qemu, "qemu-system-arm is missing (Debian: apt-get install qemu-system-arm)")
         self.path, self.writes = f"{folder}/link.sock", f"{folder}/writes.log"
@@ -49,7 +49,7 @@ class Emulator:
             [qemu, "-M", "netduinoplus2", "-display", "none", "-monitor", "none",
              "-semihosting-config", "enable=on,target=native",
              "-serial", "null", "-chardev", f"socket,id=link,path={self.path},server=on,wait=off",
-             "-serial", "chardev:link", "-kernel", image, "-d", "unimp,guest_errors", "-D", self.writes],
+             "-serial", "chardev:link", "-kernel", image, "-d", "unimp,guest_errors", "-D", self.writes, *more],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
     def connect(self):
@@ -121,6 +121,27 @@ def lockstep(wire):
     return TICKS / (time.monotonic() - started)
 
 
+def own_again(wire, before):
+    """A plant's settings and path end with it: what is driven is what was there when the board was switched on."""
+    wire.hello()
+    after = settings(wire)
+    expect(after == before, f"after lock-step the settings are {after}, at the start they were {before}")
+    wire.ask({"Begin": {"x": 0, "y": 0, "heading": 0}})
+    wire.ask({"Arm": {"token": wire.token}})
+    time.sleep(0.3)
+    expect(state(wire)[0]["armed"], "after lock-step the board's own path is not driven")
+    record = link.unpack_record(wire.ask({"Record": {}}, parts=3))
+    expect(abs(record["remaining"] - link.q16(1)) < link.q16(0.01), f"its own path is a metre long; driven is {record}")
+    wire.ask({"Stop": {}})
+
+
+def settings(wire):
+    """All that the link tells, by id."""
+    mounts = range(257, 257 + 4 * wire.ask({"Get": {"id": 256}})["value"])
+    ids = (*range(1, 4), *range(10, 15), *range(20, 23), *range(30, 37), *range(40, 53), *range(60, 66), *range(70, 77), 80, 81, 256)
+    return {number: wire.ask({"Get": {"id": number}})["value"] for number in (*ids, *mounts)}
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -133,7 +154,9 @@ def main():
             boot = time.monotonic() - started
             expect((answer["armed"], cause) == (False, "Boot"), f"at its start it is {answer}")
             drive(emulator, wire)
+            before = settings(wire)
             rate = lockstep(wire)
+            own_again(wire, before)
             stack = state(wire)[0]["stack"]
         finally:
             emulator.process.kill()

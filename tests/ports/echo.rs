@@ -135,6 +135,30 @@ fn an_echo_pin_stuck_high_is_told() {
     }
 }
 
+/// As the firmware does: edges by interrupt, and the level once more after a reading.
+#[test]
+fn an_echo_pin_without_edges_is_told_each_time() {
+    let triggers: [Trigger; 2] = core::array::from_fn(|_| Trigger::default());
+    let mut ring = EchoRing::new(triggers, HC_SR04).unwrap();
+    let mut ranges = Vec::new();
+    for now in (0..900_000).step_by(100) {
+        // Stuck from the beginning of its first echo on; the other is silent.
+        if now == 1_000 {
+            ring.edge(0, true, now);
+        }
+        if let Some(sample) = ring.poll(now) {
+            ring.edge(sample.index, sample.index == 0, now);
+            ranges.push((sample.index, sample.range));
+        }
+    }
+    assert_eq!(ranges[0], (0, Range::Invalid(Fault::Timeout)));
+    assert!(ranges.len() > 10, "{ranges:?}");
+    for (index, range) in &ranges[1..] {
+        let fault = [Fault::Bus, Fault::Timeout][*index];
+        assert_eq!(*range, Range::Invalid(fault), "{ranges:?}");
+    }
+}
+
 #[test]
 fn a_missed_falling_edge_costs_one_reading() {
     let mut ring = EchoRing::new([Trigger::default()], HC_SR04).unwrap();

@@ -212,9 +212,9 @@ fn without_commands_the_wheels_stop_within_the_timeout() {
     let mut rig = Rig::new(settings());
     rig.run(0.4, 0.4, 0.5);
     // The last command was at most four steps ago.
-    for step in 1..=41 {
+    for step in 1..=36 {
         let _ = rig.step(Ok(rig.counts()));
-        if step <= 36 {
+        if step <= 35 {
             assert!(
                 matches!(rig.told()[0], MotorCommand::Drive(_)),
                 "step {step}"
@@ -279,15 +279,38 @@ fn rocking_a_held_wheel_is_no_stall() {
 }
 
 #[test]
-fn the_timeout_is_exact_and_a_late_step_sees_it() {
-    for (pause, drives) in [(200_000, true), (200_001, false), (900_000, false)] {
+fn the_timeout_counts_from_the_command() {
+    // As long as the steps are, and wherever between two of them the command comes.
+    for step in [1_000, 4_999, 5_000, 5_003, 20_000] {
+        for at in [0, 1, step / 2, step - 1] {
+            let mut rig = Rig::new(settings());
+            rig.run(0.4, 0.4, 0.5);
+            let next = |rig: &mut Rig| {
+                rig.now = rig.now.wrapping_add(step);
+                rig.drive.step(rig.now, Ok(rig.counts())).unwrap();
+            };
+            next(&mut rig);
+            let commanded = rig.now.wrapping_add(at);
+            assert_eq!(rig.command(0.4, 0.4), [Ok(()); 2]);
+            while rig.told() != BRAKES {
+                next(&mut rig);
+                assert!(rig.now.wrapping_sub(commanded) <= 200_000, "{step} {at}");
+            }
+            let after = rig.now.wrapping_sub(commanded);
+            assert!(after + 2 * step > 200_000, "{step} {at}: {after}");
+        }
+    }
+}
+
+#[test]
+fn a_late_step_sees_the_timeout() {
+    for pause in [200_001, 900_000] {
         let mut rig = Rig::new(settings());
         rig.run(0.4, 0.4, 0.5);
         assert_eq!(rig.command(0.4, 0.4), [Ok(()); 2]);
-        rig.step(Ok(rig.counts())).unwrap();
         rig.now = rig.now.wrapping_add(pause - STEP_US);
         let _ = rig.step(Ok(rig.counts()));
-        assert_eq!(rig.told() != BRAKES, drives, "{pause}");
+        assert_eq!(rig.told(), BRAKES, "{pause}");
     }
 }
 

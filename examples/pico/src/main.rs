@@ -129,8 +129,11 @@ fn main() -> ! {
         }
         if let Some(sample) = sonar.poll(chip::now_us())
             && let Some(&index) = PLACES.get(sample.index)
+            && let Some(pin) = ECHO.get(sample.index)
             && let Some(place) = SAMPLES.get(index)
         {
+            // A pin that is stuck has no edges: it is told each time.
+            sonar.edge(sample.index, pin.read(), chip::now_us());
             place.put(Sample { index, ..sample });
         }
         // Every interrupt, so every millisecond at least.
@@ -319,6 +322,10 @@ impl Board for Chip {
 
     fn feed(&mut self) {
         chip::feed(&self.watchdog);
+    }
+
+    fn own(&mut self, params: &mut Params<RANGES>) {
+        *params = self::params();
     }
 
     /// The link tells.

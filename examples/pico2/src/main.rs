@@ -8,8 +8,9 @@
 
 use core::convert::Infallible;
 use embedded_hal::digital::{InputPin, OutputPin};
-use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, STEP_US, kit};
+use fuzzypilot::firmware::{Board, BoardPilot, Event, Machine, Panel, RANGES, STEP_US, kit};
 use fuzzypilot::link::message::Cause;
+use fuzzypilot::params::Params;
 use fuzzypilot::ports::bridge::{Bridge, Effort, Motor};
 use fuzzypilot::ports::ring::Sample;
 use fuzzypilot::ports::wheel_loop::WheelLoop;
@@ -119,9 +120,12 @@ where
     }
 
     fn due(&mut self) -> bool {
-        let due = (self.now_us)().wrapping_sub(self.due) >= STEP_US;
+        let now_us = (self.now_us)();
+        let late = now_us.wrapping_sub(self.due);
+        let due = late >= STEP_US;
         if due {
-            self.due = self.due.wrapping_add(STEP_US);
+            // Missed steps are not made up for.
+            self.due = now_us.wrapping_sub(late % STEP_US);
         }
         due
     }
@@ -153,6 +157,10 @@ where
 
     fn feed(&mut self) {
         (self.feed)();
+    }
+
+    fn own(&mut self, params: &mut Params<RANGES>) {
+        *params = kit::params();
     }
 
     fn log(&mut self, _: Event) {}

@@ -44,6 +44,8 @@ pub struct Target {
     scan: u8,
     token: u32,
     uptime_ms: u32,
+    /// The plant's last time-out after which the robot was disarmed.
+    timed_out: Option<(f64, f64)>,
     /// Since when and why it is disarmed.
     disarmed: Option<(f64, Cause)>,
     /// Good answers in a row.
@@ -302,6 +304,7 @@ impl Target {
             scan: 0,
             token: state.token,
             uptime_ms: state.uptime_ms,
+            timed_out: None,
             disarmed: None,
             good: 0,
             lost: 0,
@@ -414,7 +417,9 @@ impl Target {
         let Some((since, cause)) = self.disarmed else {
             return Ok(());
         };
-        let by_the_link = matches!(cause, Cause::LinkTimeout | Cause::Sequence);
+        // In a run a stop is sent for want of answers only.
+        let unanswered = cause == Cause::StopCommand;
+        let by_the_link = unanswered || matches!(cause, Cause::LinkTimeout | Cause::Sequence);
         let enough = self.rearm.filter(|_| by_the_link).unwrap_or(RECOVERED);
         if self.good < enough {
             return Ok(());
@@ -425,6 +430,10 @@ impl Target {
                 time: since,
                 cause,
                 hint: match by_the_link {
+                    true if unanswered => {
+                        "its answers were lost, and the motors stopped by themselves; motion goes on only after \
+                         arming again: --rearm does that"
+                    }
                     true => {
                         "the link has recovered, but motion goes on only after arming again: \
                          --rearm does that"
@@ -581,6 +590,22 @@ impl Target {
         confused(self.line.name(), what, &Answer::Refused(why))
     }
 
+    /// The motors have stopped by themselves, and the robot, which has heard everything, knows nothing of it: a record that
+    /// comes through now drives nothing, and the robot is stopped.
+    fn stop(&mut self, time: f64) -> Result<Reply, Outage> {
+        self.report.event(time, "stopped: its answers were lost");
+        self.report.ticks -= 1;
+        let sequence = self.line.send(&ToTarget::Stop)?;
+        self.settle(sequence, time, FIRST)?;
+        match self.disarmed {
+            Some((_, cause)) => {
+                self.report.disarmed_ticks += 1;
+                Ok(Reply::Disarmed(cause))
+            }
+            None => self.lost(time, "no answer"),
+        }
+    }
+
     fn exchange(
         &mut self,
         time: f64,
@@ -632,8 +657,15 @@ impl<const N: usize> Controller<N> for Target {
         let mut readings = vec![RangeReading::NEVER_SEEN; ports.ranges.mounted()];
         ports.ranges.read(&mut readings);
         let reply = self.exchange(time, counts, &readings)?;
-        if let Reply::Tick(record) = &reply {
-            command(ports, record);
+        let late = self.timed_out != ports.drive.timed_out;
+        match reply {
+            Reply::Lost => return Ok(reply),
+            Reply::Tick(_) if late => {
+                self.timed_out = ports.drive.timed_out;
+                return self.stop(time);
+            }
+            Reply::Tick(ref record) => command(ports, record),
+            Reply::Disarmed(_) => self.timed_out = ports.drive.timed_out,
         }
         Ok(reply)
     }
