@@ -663,7 +663,7 @@ fn the_largest_sums_fit() {
     assert_eq!(values[0], LIMIT);
     assert!(values[1].abs() <= 512, "{}", values[1]);
     // One more set does not, nor two more numbers.
-    for (output, count) in [(outputs[1], 256), (outputs[0], 257)] {
+    for (output, count) in [(outputs[1], 2048), (outputs[0], 257)] {
         let rules = vec![Rule::new(&[&[Is(0, 0)]], &[(0, 0)]); count];
         let last_good = [Block::min(&rules[1..])];
         System::checked(&inputs, &last_good, &[output]).unwrap();

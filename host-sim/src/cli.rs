@@ -29,7 +29,7 @@ pub use host_sim::put::{put, put_all};
 use host_sim::run::RunError;
 use host_sim::scenario::{PathForm, Scenario, ScenarioError};
 use host_sim::track::Piece;
-pub use overwriting::{DESIGN, not_what_is_read};
+pub use overwriting::{DESIGN, none_of_what_is_read, not_what_is_read, of_worlds};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::path::Path;

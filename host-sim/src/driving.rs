@@ -6,7 +6,7 @@
 
 mod tables;
 
-pub use tables::{NotFine, tables};
+pub use tables::{Fine, NotFine, SCALED, tables};
 
 use crate::fuzzy::lower::Lowered;
 use crate::fuzzy::model::System;
@@ -16,7 +16,6 @@ use crate::run::{RunError, simulate_with};
 use crate::scenario::Scenario;
 use crate::si;
 use fuzzypilot::signals::Decision;
-use fuzzypilot::tables::fine::FineTwin;
 use serde::Serialize;
 
 /// Scenarios that a follower's design drives, each with the seeds 1 to `seeds`.
@@ -83,11 +82,11 @@ struct Run {
 }
 
 impl Run {
-    fn new(scenario: &Scenario, seed: u64, tables: &'static FineTwin) -> Result<Self, RunError> {
+    fn new(scenario: &Scenario, seed: u64, fine: Fine<'static>) -> Result<Self, RunError> {
         let mut metrics = Metrics::new(scenario, seed);
         let (mut squares, mut following) = (0.0, 0_u32);
         let (mut turned, mut last, mut ticks) = (0.0, 0.0, 0_u32);
-        let ending = simulate_with(scenario, seed, tables, &mut |step| {
+        let ending = simulate_with(scenario, seed, fine, &mut |step| {
             metrics.observe(&step);
             let rate = si::from_rate(step.record.twist.angular);
             turned += (rate - last).abs();
@@ -117,10 +116,14 @@ impl Driving<'_> {
     ///
     /// The design is none of the follower's; or the library refuses a scenario.
     pub fn drive(&self, design: &System) -> Result<Vec<Drive>, DrivingError> {
-        let tables = Box::leak(Box::new(tables(design)?));
+        let (tables, apart) = tables(design)?;
+        let fine = Fine {
+            tables: Box::leak(Box::new(tables)),
+            apart,
+        };
         let drives = self.scenarios.iter().map(|scenario| {
             let runs: Vec<Run> = (1..=self.seeds)
-                .map(|seed| Run::new(scenario, seed, tables))
+                .map(|seed| Run::new(scenario, seed, fine))
                 .collect::<Result<_, _>>()?;
             let mean = |of: &dyn Fn(&Run) -> f64| {
                 runs.iter().map(of).sum::<f64>() / runs.len().max(1) as f64
@@ -178,7 +181,11 @@ mod tests {
     fn a_design_of_the_printed_tables_drives_as_they_do() {
         let mut scenario = load("line-offset").unwrap();
         scenario.control.tables = Some(crate::control::TablesName::Printed);
-        let twin = Box::leak(Box::new(tables(&fine()).unwrap()));
+        let (twin, apart) = tables(&fine()).unwrap();
+        let twin = Fine {
+            tables: Box::leak(Box::new(twin)),
+            apart,
+        };
         let (mut own, mut designed) = (Vec::new(), Vec::new());
         simulate(&scenario, 1, &mut |step| own.push(step.record.clone())).unwrap();
         simulate_with(&scenario, 1, twin, &mut |step| {
@@ -192,6 +199,63 @@ mod tests {
         let mut tuned = Vec::new();
         simulate(&scenario, 1, &mut |step| tuned.push(step.record.clone())).unwrap();
         assert!(tuned != designed);
+    }
+
+    /// Terms of d half as far apart are the same as a robot that counts its distance in units half as long.
+    #[test]
+    fn the_distance_of_the_peaks_is_the_scale_of_the_distance() {
+        let text =
+            std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("designs/fine.fll"))
+                .unwrap();
+        let (before, after) = text.split_once("InputVariable: d").unwrap();
+        let (of_d, rest) = after.split_once("OutputVariable").unwrap();
+        let halved: Vec<String> = of_d
+            .lines()
+            .map(|line| match line.trim().starts_with("term:") {
+                false => line.to_owned(),
+                true => {
+                    let half = |word: &str| {
+                        word.parse()
+                            .map_or(word.to_owned(), |x: f64| (x / 2.0).to_string())
+                    };
+                    format!(
+                        "  {}",
+                        line.split_whitespace()
+                            .map(half)
+                            .collect::<Vec<_>>()
+                            .join(" ")
+                    )
+                }
+            })
+            .collect();
+        let text = format!(
+            "{before}InputVariable: d{}\nOutputVariable{rest}",
+            halved.join("\n")
+        );
+        let narrow = crate::fuzzy::files::parse(
+            "fine.fll",
+            text.as_bytes(),
+            crate::fuzzy::files::Format::Fll,
+        )
+        .unwrap();
+        let drive = |design: &System, factor: f64| {
+            let (twin, apart) = tables(design).unwrap();
+            let fine = Fine {
+                tables: Box::leak(Box::new(twin)),
+                apart: apart * factor,
+            };
+            let mut seen = Vec::new();
+            let scenario = load("line-offset").unwrap();
+            simulate_with(&scenario, 1, fine, &mut |step| {
+                seen.push(step.record.clone())
+            })
+            .unwrap();
+            seen
+        };
+        let (wide, narrow_drive) = (drive(&fine(), 1.0), drive(&narrow, 1.0));
+        assert!(wide != narrow_drive);
+        assert!(narrow_drive == drive(&fine(), 0.5));
+        assert!(wide == drive(&narrow, 2.0));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The loop: plant and sensors around the library's own tick, which is computed here or by a [`Controller`] elsewhere.
 
+use crate::driving::Fine;
 use crate::params::params;
 use crate::plant::{Plant, PlantSettings, command_timeout};
 use crate::recording::BeamView;
@@ -8,14 +9,14 @@ use crate::scenario::{PathForm, Scenario};
 use crate::sensors::{SimDrive, SimEncoders, SimRanges};
 use crate::si;
 use crate::track::{Piece, Track};
+use fixed::types::I16F16;
 use fuzzypilot::behaviour::fine::FineController;
 use fuzzypilot::geometry::Point;
 use fuzzypilot::guide::{Path, PathError, Segment, Waypoint};
 use fuzzypilot::link::message::Cause;
-use fuzzypilot::params::{ParamError, Params};
+use fuzzypilot::params::{Follower, Limits, ParamError, Params};
 use fuzzypilot::ports::{Fault, Ports, RangeReading, WheelCounts, WheelEncoders};
 use fuzzypilot::signals::{Decision, StopReason, TickRecord};
-use fuzzypilot::tables::fine::FineTwin;
 use fuzzypilot::tick::Robot;
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -180,33 +181,43 @@ pub fn simulate(
     observe: &mut dyn FnMut(Step<'_>),
 ) -> Result<Ending, RunError> {
     let tables = scenario.control.fine_set(scenario.robot.preset).twin();
-    simulate_with(scenario, seed, tables, observe)
+    let fine = Fine { tables, apart: 1.0 };
+    simulate_with(scenario, seed, fine, observe)
 }
 
 /// Like [`simulate`] with these fine tables instead of the scenario's.
 pub fn simulate_with(
     scenario: &Scenario,
     seed: u64,
-    tables: &'static FineTwin,
+    fine: Fine<'static>,
     observe: &mut dyn FnMut(Step<'_>),
 ) -> Result<Ending, RunError> {
     match scenario.sensors.count {
-        8 => in_process::<8>(scenario, seed, tables, observe),
-        16 => in_process::<16>(scenario, seed, tables, observe),
-        32 => in_process::<32>(scenario, seed, tables, observe),
-        _ => in_process::<64>(scenario, seed, tables, observe),
+        8 => in_process::<8>(scenario, seed, fine, observe),
+        16 => in_process::<16>(scenario, seed, fine, observe),
+        32 => in_process::<32>(scenario, seed, fine, observe),
+        _ => in_process::<64>(scenario, seed, fine, observe),
     }
+}
+
+/// The controller of these tables. Peaks of d that are nearer to each other are a larger scale of d; one that the number format
+/// has no place for is its largest.
+fn controller(fine: Fine<'static>, follower: &Follower, limits: &Limits) -> FineController {
+    let mut follower = *follower;
+    let scale = follower.distance_scale.to_num::<f64>() / fine.apart;
+    follower.distance_scale = I16F16::saturating_from_num(scale);
+    FineController::of(fine.tables, &follower, limits)
 }
 
 fn in_process<const N: usize>(
     scenario: &Scenario,
     seed: u64,
-    tables: &'static FineTwin,
+    fine: Fine<'static>,
     observe: &mut dyn FnMut(Step<'_>),
 ) -> Result<Ending, RunError> {
     let params: Params<N> = params(scenario)?;
     let owned = OwnedPath::new(scenario);
-    let fine = FineController::of(tables, &params.follower, &params.limits);
+    let fine = controller(fine, &params.follower, &params.limits);
     let mut controller = InProcess {
         robot: Robot::with_fine(params.clone(), fine, si::pose(scenario.start)),
         path: owned.view()?,

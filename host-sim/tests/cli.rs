@@ -1022,3 +1022,98 @@ fn arguments_that_clap_refuses_are_named_with_what_is_allowed() {
         refused_by_clap(args, parts);
     }
 }
+
+/// Whatever a result's file is called, and whatever name the file that is read has beside its own.
+#[test]
+fn no_command_writes_over_what_it_reads() {
+    let dir = tempdir().unwrap();
+    let here = dir.path();
+    fs::create_dir(here.join("o")).unwrap();
+    for file in [
+        "run.svg",
+        "run.png",
+        "replay.html",
+        "ticks.csv",
+        "summary.json",
+    ] {
+        fs::write(here.join("o").join(file), GOOD).unwrap();
+        let scenario = format!("o/{file}");
+        let lost = format!("{scenario} is the scenario that is read, which would be lost");
+        refused(
+            here,
+            &["run", &scenario, "--out", "o"],
+            2,
+            &["--out: ", &lost],
+        );
+        let json = ["run", &scenario, "--out", "p", "--json", &scenario];
+        refused(here, &json, 2, &["--json: ", &lost]);
+        fs::remove_file(here.join(&scenario)).unwrap();
+    }
+    for file in [
+        "decisions.svg",
+        "decisions.png",
+        "ticks.csv",
+        "summary.json",
+    ] {
+        let log = format!("o/{file}");
+        fs::write(here.join(&log), "").unwrap();
+        let lost = format!("{log} is the log that is read");
+        refused(
+            here,
+            &["replay-carmen", &log, "--out", "o"],
+            2,
+            &["--out: ", &lost],
+        );
+    }
+    fs::write(here.join("worlds.jsonl"), "").unwrap();
+    fs::write(here.join("common.json"), "").unwrap();
+    fs::create_dir_all(here.join("barn/path_files")).unwrap();
+    fs::write(here.join("barn/world_1.world"), "").unwrap();
+    fs::write(here.join("barn/path_files/path_1.npy"), "").unwrap();
+    for (worlds, file) in [
+        ("worlds.jsonl", "worlds.jsonl"),
+        ("worlds.jsonl", "common.json"),
+        ("barn", "barn/world_1.world"),
+        ("barn", "barn/path_files/path_1.npy"),
+    ] {
+        let lost = format!("{file} is a file of the worlds that is read");
+        let args = ["bench", "--worlds", worlds, "--json", file];
+        refused(here, &args, 2, &["--json: ", &lost]);
+        for result in ["table.txt", "per-world.csv", "index.html"] {
+            fs::create_dir(here.join("report")).unwrap();
+            fs::hard_link(here.join(file), here.join("report").join(result)).unwrap();
+            let args = ["bench", "--worlds", worlds, "--report", "report"];
+            refused(
+                here,
+                &args,
+                2,
+                &["--report: ", "is a file of the worlds that is read"],
+            );
+            fs::remove_dir_all(here.join("report")).unwrap();
+        }
+        for result in ["tuned.rs", "report.json", "state.json"] {
+            fs::create_dir(here.join("tuned")).unwrap();
+            fs::hard_link(here.join(file), here.join("tuned").join(result)).unwrap();
+            let args = ["tune", "--worlds", worlds, "--out", "tuned"];
+            refused(
+                here,
+                &args,
+                2,
+                &["--out: ", "is a file of the worlds that is read"],
+            );
+            fs::remove_dir_all(here.join("tuned")).unwrap();
+        }
+    }
+    fs::write(here.join("o/per-world.csv"), "").unwrap();
+    let cylinders = ["--task", "unmapped", "--unmapped", "o/per-world.csv"];
+    let bench = ["bench", "--worlds", "generated:barn"];
+    for (option, value) in [("--report", "o"), ("--json", "o/per-world.csv")] {
+        let args = [&bench[..], &cylinders, &[option, value]].concat();
+        refused(
+            here,
+            &args,
+            2,
+            &[option, "is the file of cylinders that is read"],
+        );
+    }
+}

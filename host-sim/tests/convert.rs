@@ -69,6 +69,20 @@ fn a_design_goes_to_standard_output_or_to_a_file() {
 }
 
 #[test]
+fn a_folder_is_no_file_to_write() {
+    let folder = tempdir().unwrap();
+    fs::create_dir(folder.path().join("made")).unwrap();
+    let fan = design("fan.fll");
+    for to in ["fll", "fcl", "rust"] {
+        for out in ["made", "new/"] {
+            let args = [fan.to_str().unwrap(), "--to", to, "--out", out];
+            let said = format!("--out {out}: is a folder; --to {to} writes one file");
+            refused(folder.path(), &args, &[&said, "allowed is a file's name"]);
+        }
+    }
+}
+
+#[test]
 fn the_format_may_be_named() {
     let folder = tempdir().unwrap();
     let text = fs::read_to_string(design("fan.fll")).unwrap();

@@ -539,3 +539,95 @@ RuleBlock: r
     let at = all["errors"][0]["classes"][3]["at"]["x"].as_f64().unwrap();
     assert!(printed.contains(&format!("┆ x = {at} ")), "{printed}");
 }
+
+/// `f64` has no digits left of a degree of 5e-324, and what it makes of a quotient of two is no measure for anything.
+#[test]
+fn degrees_that_f64_hardly_has_are_not_compared() {
+    let tails = "Engine: tail\nInputVariable: x\n  range: 0 100\n  term: low Gaussian 0 1\n  term: high Gaussian 100 1\n\
+         OutputVariable: y\n  range: 0 20\n  defuzzifier: WeightedAverage\n  default: 0\n\
+         term: p Constant 10.7\n  term: q Constant 15.4\n\
+         RuleBlock: r\n  activation: General\n  rule: if x is low then y is p\n  rule: if x is high then y is q\n";
+    let args = ["check", "design.fll", "--points", "20000"];
+    let (code, printed, said) = run(&with(tails), &args);
+    assert_eq!((code, &said[..]), (0, ""), "{printed}");
+    // 10.7 all along its tail, whatever the last digits say: nothing there rises and falls.
+    assert!(!printed.contains("11 at"), "{printed}");
+}
+
+/// A tooth that ends in a jump, far narrower than a box of three inputs: 11 % off where `check` once saw nothing.
+#[test]
+fn a_tooth_between_all_points_counts_for_max_error() {
+    let input = |name: &str, more: &str| {
+        let terms: String = (0..9)
+            .map(|i| {
+                let [left, peak, right] = [i - 1, i, i + 1].map(|i| f64::from(i) / 8.0);
+                format!("  term: t{i} Triangle {left} {peak} {right}\n")
+            })
+            .collect();
+        format!("InputVariable: {name}\n  range: 0 1\n{terms}{more}")
+    };
+    let tooth =
+        "  term: saw Discrete 0 0 0.30714 0 0.3072 1 0.3072 0 1 0\n  term: all Ramp -2 -1\n";
+    let asks: String = ["a", "b", "c"]
+        .iter()
+        .flat_map(|name| {
+            (0..9).map(move |i| format!("  rule: if {name} is t{i} then y is lo with 0.001\n"))
+        })
+        .collect();
+    let saw = format!(
+        "Engine: saw\n{}{}{}OutputVariable: y\n  range: 0 100\n  defuzzifier: WeightedAverage\n  term: lo Constant 0\n  \
+         term: hi Constant 100\nRuleBlock: r\n  conjunction: Minimum\n  activation: General\n  \
+         rule: if a is saw then y is hi\n  rule: if a is all then y is lo with 0.5\n{asks}",
+        input("a", tooth),
+        input("b", ""),
+        input("c", ""),
+    );
+    let (code, _, said) = run(&with(&saw), &["check", "design.fll", "--max-error", "1"]);
+    assert_eq!(code, 1);
+    assert!(said.contains("--max-error allows 1 %"), "{said}");
+}
+
+/// 4,096 rules about sets of which the largest counts: fewer points, and it says so.
+#[test]
+fn thousands_of_rules_get_fewer_points_and_it_is_said() {
+    let axis = |name: &str, kind: &str, count: i32, step: f64| -> String {
+        (0..count)
+            .map(|i| {
+                let [left, peak, right] = [i - 1, i, i + 1].map(|i| f64::from(i) * step);
+                format!(
+                    "  term: {name}{i} {kind} {}\n",
+                    match kind {
+                        "Gaussian" => format!("{peak} {}", step / 2.0),
+                        _ => format!("{left} {peak} {right}"),
+                    }
+                )
+            })
+            .collect()
+    };
+    let mut text = "Engine: many\n".to_owned();
+    for name in ["a", "b"] {
+        text += &format!(
+            "InputVariable: {name}\n  range: 0 63\n{}",
+            axis("t", "Gaussian", 64, 1.0)
+        );
+    }
+    text += &format!(
+        "OutputVariable: y\n  range: 0 100\n  aggregation: Maximum\n  defuzzifier: Centroid 100\n{}\
+         RuleBlock: r\n  conjunction: Minimum\n  implication: Minimum\n  activation: General\n",
+        axis("o", "Triangle", 11, 10.0)
+    );
+    for i in 0..64 {
+        for j in 0..64 {
+            text += &format!(
+                "  rule: if a is t{i} and b is t{j} then y is o{}\n",
+                (i + j) * 10 / 126
+            );
+        }
+    }
+    let begin = std::time::Instant::now();
+    let (code, printed, said) = run(&with(&text), &["check", "design.fll"]);
+    assert_eq!((code, &said[..]), (0, ""), "{printed}");
+    assert!(printed.contains("100000 were asked for"), "{printed}");
+    // About ten seconds on two idle cores as the program is shipped; nothing waits for minutes.
+    assert!(begin.elapsed().as_secs() < 100, "{:?}", begin.elapsed());
+}

@@ -254,6 +254,44 @@ fn a_design_of_matlabs_is_tuned_and_written_where_its_centroid_can_be_said() {
 }
 
 #[test]
+fn rows_outside_of_the_ranges_are_counted() {
+    let folder = folder();
+    let here = folder.path();
+    let text = fs::read_to_string(here.join("data.csv")).unwrap();
+    let names = text.lines().next().unwrap();
+    let row = |temperature: &str| {
+        let of = |name: &str| match name {
+            "temperature" => temperature.to_owned(),
+            _ => "50".to_owned(),
+        };
+        names.split(',').map(of).collect::<Vec<_>>().join(",")
+    };
+    let rows = [row("-7"), row("20"), row("1000")].join("\n");
+    fs::write(here.join("beyond.csv"), format!("{names}\n{rows}\n")).unwrap();
+    let args = [
+        "tune",
+        "detuned.fll",
+        "--ignore",
+        "fan (fixed)",
+        "--evaluations",
+        "10",
+    ];
+    for (data, said) in [
+        (
+            "beyond.csv",
+            "note: beyond.csv: 2 of 3 rows lie outside the inputs' ranges\n",
+        ),
+        ("data.csv", ""),
+    ] {
+        let mut command = host_sim(here);
+        command.args(args).args(["--data", data, "--out", "tuned"]);
+        let output = command.assert().success();
+        let errors = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+        assert_eq!(errors, said);
+    }
+}
+
+#[test]
 fn what_is_fixed_stays() {
     let folder = folder();
     fit(
@@ -275,7 +313,7 @@ fn what_is_fixed_stays() {
 }
 
 #[test]
-fn the_follower_drives_better_and_keeps_its_inputs() {
+fn the_follower_drives_better_and_its_distance_stays_evenly_divided() {
     let folder = tempdir().unwrap();
     let fine = design("fine.fll");
     tune(
@@ -293,8 +331,38 @@ fn the_follower_drives_better_and_keeps_its_inputs() {
     assert_eq!(report["drives"].as_array().unwrap().len(), 2);
     for change in report["changed"].as_array().unwrap() {
         let variable = change["variable"].as_str().unwrap();
-        assert!(["speed", "deflection"].contains(&variable), "{change}");
+        assert!(["d", "speed", "deflection"].contains(&variable), "{change}");
     }
+    // d's peaks as far apart from each other as from zero, and nearer than they were.
+    let tuned = load(&folder.path().join("drive/tuned.fll"), None).unwrap();
+    let d = &tuned.inputs.iter().find(|input| input.name == "d").unwrap();
+    let peaks: Vec<f64> = d.terms[1..4]
+        .iter()
+        .map(|term| match term.shape {
+            Shape::Triangle { peak, .. } => peak,
+            ref other => panic!("{other:?}"),
+        })
+        .collect();
+    assert!(peaks[0] > 0.25 && peaks[0] < 1.0, "{peaks:?}");
+    assert_eq!(peaks[1..], [2.0 * peaks[0], 3.0 * peaks[0]]);
+    // So even that a module takes the quickest route, and that it drives on from there.
+    let module = fs::read_to_string(folder.path().join("drive/tuned.rs")).unwrap();
+    assert!(module.contains("TwinTable"), "{module}");
+    let again = "drive/tuned.fll --scenario line --evaluations 10 --out again";
+    tune(folder.path(), again).assert().success();
+    // A wish that holds d still does.
+    let still = format!(
+        "{} --scenario line --fix d --evaluations 10 --out still",
+        fine.display()
+    );
+    tune(folder.path(), &still).assert().success();
+    let tuned = load(&folder.path().join("still/tuned.fll"), None).unwrap();
+    let before = load(&fine, None).unwrap();
+    let shapes = |system: &System| -> Vec<Shape> {
+        let terms = system.inputs.iter().flat_map(|input| &input.terms);
+        terms.map(|term| term.shape.clone()).collect()
+    };
+    assert_eq!(shapes(&tuned), shapes(&before));
 }
 
 /// Runs it, expects exit code 2 and every one of `parts` on stderr, and that the folder stays as it was.

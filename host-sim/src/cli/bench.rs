@@ -4,7 +4,9 @@ mod conditions;
 mod report;
 pub mod table;
 
-use super::{BadInput, check_folder_of, print, put, whole};
+use super::{
+    BadInput, check_folder_of, none_of_what_is_read, not_what_is_read, of_worlds, print, put, whole,
+};
 use clap::Args;
 pub use conditions::Task;
 use conditions::Trouble;
@@ -18,7 +20,7 @@ use host_sim::bench::worlds::{self, numbers::Numbers, unmapped};
 use host_sim::bench::{arena::Arena, sensors};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub struct BenchArguments {
@@ -95,6 +97,7 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.report {
         check_folder_of("--report", folder)?;
     }
+    nothing_lost(arguments)?;
     let arenas = arenas(arguments, &numbers, &body)?;
     let arenas = match shard {
         Some(shard) => shard.of(arenas),
@@ -139,6 +142,24 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         "{simulated:.0} s driven, {:.0} × real time a thread\n",
         simulated / spent
     ))
+}
+
+/// Refuses results in the place of what is read.
+fn nothing_lost(arguments: &BenchArguments) -> Result<(), BadInput> {
+    let worlds = of_worlds(&arguments.worlds);
+    let worlds = worlds
+        .iter()
+        .map(|file| ("a file of the worlds", file.as_path()));
+    let cylinders = arguments.unmapped.iter();
+    let cylinders = cylinders.map(|file| ("the file of cylinders", file.as_path()));
+    let read: Vec<(&str, &Path)> = worlds.chain(cylinders).collect();
+    if let Some(file) = &arguments.json {
+        not_what_is_read("--json", file, &read)?;
+    }
+    match &arguments.report {
+        Some(folder) => none_of_what_is_read("--report", folder, &report::FILES, &read),
+        None => Ok(()),
+    }
 }
 
 /// Refuses a comparison of which nothing would be learned.

@@ -1,6 +1,6 @@
 //! `host-sim replay-carmen`
 
-use super::{BadInput, check_folder, number, print, put};
+use super::{BadInput, check_folder, none_of_what_is_read, number, print, put};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
@@ -45,6 +45,14 @@ enum Task {
     Path,
 }
 
+/// What is written.
+const FILES: [&str; 4] = [
+    "decisions.svg",
+    "decisions.png",
+    "ticks.csv",
+    "summary.json",
+];
+
 pub fn execute(arguments: &CarmenArguments) -> anyhow::Result<()> {
     let file = &arguments.file;
     let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -56,6 +64,7 @@ pub fn execute(arguments: &CarmenArguments) -> anyhow::Result<()> {
     let refused = |e| BadInput(format!("--body {}: {e}", arguments.body));
     let body = Body::parse(&arguments.body).map_err(refused)?;
     check_folder(&folder)?;
+    none_of_what_is_read("--out", &folder, &FILES, &[("the log", file)])?;
     let log = log::read(file)?;
     let timeline = Timeline::new(&log, arguments.pace);
     if timeline.duration() > LONGEST {

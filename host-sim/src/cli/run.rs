@@ -1,6 +1,9 @@
 //! `host-sim run`
 
-use super::{BadInput, Variants, check_folder, load, not_what_is_read, print, put, whole};
+use super::{
+    BadInput, Variants, check_folder, load, none_of_what_is_read, not_what_is_read, print, put,
+    whole,
+};
 use anyhow::Context;
 use clap::Args;
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
@@ -57,9 +60,11 @@ pub fn execute(arguments: &RunArguments) -> anyhow::Result<()> {
         None => Path::new("out").join(&scenario.name),
     };
     check_folder(&folder)?;
+    let read = [("the scenario", Path::new(name))];
+    none_of_what_is_read("--out", &folder, &FILES, &read)?;
     if let Some(file) = &arguments.json {
         check_file(file, &folder)?;
-        not_what_is_read("--json", file, &[("the scenario", Path::new(name))])?;
+        not_what_is_read("--json", file, &read)?;
     }
 
     let mut watch = Watch::new(&scenario, arguments.seed);
@@ -146,6 +151,15 @@ pub fn json(summary: &impl Serialize) -> anyhow::Result<Vec<u8>> {
     text.push('\n');
     Ok(text.into_bytes())
 }
+
+/// What [`write`] makes.
+const FILES: [&str; 5] = [
+    "run.svg",
+    "run.png",
+    "replay.html",
+    "ticks.csv",
+    "summary.json",
+];
 
 fn write(
     folder: &Path,

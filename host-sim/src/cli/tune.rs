@@ -3,7 +3,10 @@
 use super::bench::Task;
 use super::run::json;
 use super::search::{INTERRUPTED, STATE, bad, bar, listen, remember, show};
-use super::{BadInput, Interrupted, check_folder, number, print, put_all, whole};
+use super::{
+    BadInput, Interrupted, check_folder, none_of_what_is_read, number, of_worlds, print, put_all,
+    whole,
+};
 use anyhow::Context;
 use clap::Args;
 use comfy_table::Cell;
@@ -19,7 +22,7 @@ use host_sim::bench::worlds::{self, unmapped};
 use host_sim::search::state::{Question, State};
 use host_sim::search::{Search, SearchError, Settings, Stop};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 #[command(after_help = "\
@@ -89,6 +92,7 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     if arguments.list {
         return list(&start, &knobs);
     }
+    nothing_lost(arguments)?;
     let tuning = Tuning {
         campaigns: campaigns(arguments, &views)?,
         start,
@@ -172,6 +176,21 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         return Err(Interrupted(format!("--resume {} goes on", state.display())).into());
     }
     Ok(())
+}
+
+/// Refuses results in the place of what is read. Only the state that is gone on from has its successor there.
+fn nothing_lost(arguments: &TuneArguments) -> Result<(), BadInput> {
+    let worlds = of_worlds(&arguments.worlds);
+    let mut read: Vec<(&str, &Path)> = Vec::new();
+    read.extend(
+        worlds
+            .iter()
+            .map(|file| ("a file of the worlds", file.as_path())),
+    );
+    none_of_what_is_read("--out", &arguments.out, &[STATE], &read)?;
+    let state = arguments.resume.iter();
+    read.extend(state.map(|file| ("the state", file.as_path())));
+    none_of_what_is_read("--out", &arguments.out, &["tuned.rs", "report.json"], &read)
 }
 
 /// Every task at every speed.

@@ -17,15 +17,27 @@ pub struct NotFine(String);
 /// Rows φ, columns d.
 type Cells = [[Term; 5]; 5];
 
-/// The tables that a design says: inputs `phi` (degrees, 0 to 180) and `d` (0 to 4) with the follower's five even terms each,
-/// outputs `speed` (0 to 3) and `deflection` (degrees, 0 to 90), a rule for each of the 25 cells.
+/// The input whose peaks may be nearer to each other than one unit: the robot has a scale for it.
+pub const SCALED: &str = "d";
+
+/// Fine tables as a simulated robot takes them.
+#[derive(Clone, Copy, Debug)]
+pub struct Fine<'a> {
+    /// Consequents.
+    pub tables: &'a FineTwin,
+    /// Units of d from one peak of it to the next: what the robot's units a metre are divided by. 1 in the chapter's tables.
+    pub apart: f64,
+}
+
+/// The tables that a design says, and how far apart the peaks of d are: inputs `phi` (degrees, 0 to 180) with the follower's five
+/// even terms, `d` (0 to 4) with five even terms from 0 on, not more than one unit apart, outputs `speed` (0 to 3) and `deflection` (degrees, 0 to 90), a rule for each of the 25 cells.
 ///
 /// # Errors
 ///
 /// What is otherwise.
-pub fn tables(design: &System) -> Result<FineTwin, NotFine> {
-    let rows = partitioned(design, "phi", PRINTED.antecedents.rows.peaks())?;
-    let cols = partitioned(design, "d", PRINTED.antecedents.cols.peaks())?;
+pub fn tables(design: &System) -> Result<(FineTwin, f64), NotFine> {
+    let (rows, _) = partitioned(design, "phi", PRINTED.antecedents.rows.peaks())?;
+    let (cols, apart) = partitioned(design, SCALED, PRINTED.antecedents.cols.peaks())?;
     if design.inputs.len() != 2 || design.outputs.len() != 2 {
         return Err(NotFine(
             "allowed are the inputs phi and d and the outputs speed and deflection alone".into(),
@@ -35,25 +47,61 @@ pub fn tables(design: &System) -> Result<FineTwin, NotFine> {
     let axis = Deflection::lit("90");
     let deflection: RuleTable<5, 5, Deflection> = table(design, "deflection", (rows, cols), axis)?;
 
-    Ok(TwinTable::new(&PRINTED.antecedents, &speed, &deflection))
+    Ok((
+        TwinTable::new(&PRINTED.antecedents, &speed, &deflection),
+        apart,
+    ))
 }
 
-/// The index of an input that has this partition.
-fn partitioned(design: &System, name: &str, peaks: [I16F16; 5]) -> Result<usize, NotFine> {
+/// The index of an input that has this partition, and its share of the range: 1 but for [`SCALED`].
+fn partitioned(design: &System, name: &str, peaks: [I16F16; 5]) -> Result<(usize, f64), NotFine> {
     let found = design.inputs.iter().position(|input| input.name == name);
     let index = found.ok_or_else(|| NotFine(format!("it has no input {name}")))?;
     let peaks = peaks.map(|peak| peak.to_num::<f64>());
     let Input { range, terms, .. } = &design.inputs[index];
-    let even =
-        range == &(peaks[0]..=peaks[4]) && terms.iter().map(|term| &term.shape).eq(&shapes(peaks));
+    let share = match terms.first().map(|term| &term.shape) {
+        Some(Shape::Ramp { from, .. }) if name == SCALED => from / peaks[1],
+        _ => 1.0,
+    };
+    let even = range == &(peaks[0]..=peaks[4])
+        && (LEAST_SHARE..=1.0).contains(&share)
+        && terms.len() == peaks.len()
+        && (terms.iter().zip(shapes(peaks.map(|peak| peak * share))))
+            .all(|(term, wanted)| is_near(&term.shape, &wanted));
     if !even {
+        let nearer = match name {
+            SCALED => format!(", or all nearer by one factor, {LEAST_SHARE} at least"),
+            _ => String::new(),
+        };
         let peaks = peaks.map(|peak| peak.to_string()).join(", ");
         return Err(NotFine(format!(
-            "the terms of {name} are others; allowed are triangles with ramps at both ends, their peaks {peaks}"
+            "the terms of {name} are others; allowed are triangles with ramps at both ends, their peaks {peaks}{nearer}"
         )));
     }
-    Ok(index)
+    Ok((index, share))
 }
+
+/// Whether they are the same but for how decimal digits are rounded.
+fn is_near(shape: &Shape, wanted: &Shape) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
+    match (shape, wanted) {
+        (Shape::Ramp { from, to }, Shape::Ramp { from: a, to: b }) => {
+            near(*from, *a) && near(*to, *b)
+        }
+        (
+            Shape::Triangle { left, peak, right },
+            Shape::Triangle {
+                left: a,
+                peak: b,
+                right: c,
+            },
+        ) => near(*left, *a) && near(*peak, *b) && near(*right, *c),
+        _ => false,
+    }
+}
+
+/// Nearer peaks would take the robot's scale too far.
+const LEAST_SHARE: f64 = 0.25;
 
 fn shapes([a, b, c, d, e]: [f64; 5]) -> [Shape; 5] {
     let triangle = |left, peak, right| Shape::Triangle { left, peak, right };

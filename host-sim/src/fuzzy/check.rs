@@ -17,7 +17,7 @@ mod sweep;
 mod turns;
 mod watch;
 
-pub use accuracy::{Accuracy, Class, STRENGTHS, class, strength};
+pub use accuracy::{Accuracy, Class, FAINTEST, STRENGTHS, class, strength};
 pub use beyond::{Beyond, beyond};
 pub use bound::{Bounds, bounds};
 pub use coverage::{Coverage, Gap, MOST_WORK, Stretch, bare, coverage, outside};

@@ -23,8 +23,12 @@ pub fn number(x: f64) -> String {
 }
 
 /// A number so that what matters of it is told: with six significant digits where they are right to a tenth of `resolution`,
-/// else with as many as are. A resolution that is no positive number asks for nothing more.
+/// else with as many as are. What is next to nothing beside it is what `f64` leaves of zero, and is told as that. A resolution that is
+/// no positive number asks for nothing more.
 pub fn number_to(x: f64, resolution: f64) -> String {
+    if x.abs() < 1e-9 * resolution {
+        return number(0.0);
+    }
     let short = number(x);
     let off = short.parse().map_or(0.0, |short: f64| (short - x).abs());
     if !(resolution > 0.0 && off > 0.1 * resolution) {
@@ -185,6 +189,9 @@ mod tests {
             (1.0 / 3.0, 0.0, "0.333333"),
             (1.0 / 3.0, f64::NAN, "0.333333"),
             (f64::INFINITY, 1.0, "inf"),
+            (1.4e-14, 1e-4, "0"),
+            (-1.4e-14, 1e-4, "0"),
+            (1.4e-14, 1e-6, "1.4e-14"),
         ] {
             assert_eq!(number_to(x, resolution), text, "{x} to {resolution}");
         }

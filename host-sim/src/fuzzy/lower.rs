@@ -16,7 +16,7 @@ pub use pieces::{ONE_FLANK, TWO_FLANKS, TWO_SIDES, width};
 pub use tables::{Block, Claims, Defuzzifier, Input, Number, Output, Rule, Tables};
 
 use super::evaluate::{Evaluation, Evaluator};
-use super::model::{Place, System};
+use super::model::{Place, Rule as ModelRule, System};
 use fuzzypilot::fuzzy::system::{self, Degree, Flaw};
 
 /// Why a model has no fixed-point form.
@@ -77,17 +77,47 @@ pub struct Lowered {
     tables: Tables,
 }
 
-/// Lowers a model.
+/// Lowers a model. An output whose weighted sums could overflow, of thousands of rules about large numbers, gets coarser steps.
 ///
 /// # Errors
 ///
 /// What does not fit, named with its place.
 pub fn lower(model: &System) -> Result<Lowered, LowerError> {
-    let tables = Tables::of(model)?;
-    tables
-        .borrowed(|system| system.map(|_| ()))
-        .map_err(LowerError::Flawed)?;
-    Ok(Lowered { tables })
+    let mut coarser = vec![0; model.outputs.len()];
+    loop {
+        let tables = Tables::of(model, &coarser)?;
+        match tables.borrowed(|system| system.map(|_| ())) {
+            Ok(()) => return Ok(Lowered { tables }),
+            Err(Flaw::Accumulator { output }) if may_be_coarser(&tables, model, output) => {
+                coarser[output] += 1;
+            }
+            Err(Flaw::Accumulator { output }) => return Err(too_many_rules(model, output)),
+            Err(flaw) => return Err(LowerError::Flawed(flaw)),
+        }
+    }
+}
+
+/// Whether coarser steps help an output's sums, and leave its range enough of them.
+fn may_be_coarser(tables: &Tables, model: &System, output: usize) -> bool {
+    let (table, range) = (&tables.outputs[output], &model.outputs[output].range);
+    let helps = matches!(table.defuzzifier, Defuzzifier::WeightedAverage { .. });
+    helps && table.format.steps(range.end() - range.start()) >= 2.0 * Format::LEAST_WIDTH
+}
+
+fn too_many_rules(model: &System, output: usize) -> LowerError {
+    let concludes = |rule: &&ModelRule| rule.conclusions.iter().any(|c| c.0 == output);
+    let rules = model.blocks.iter().flat_map(|block| &block.rules);
+    let output = &model.outputs[output];
+    LowerError::TooMany {
+        place: output.place,
+        what: format!(
+            "the output `{}` is concluded by {} rules whose sets are added",
+            output.name,
+            rules.filter(concludes).count()
+        ),
+        limit: "2047 are possible at one place, those of overlapping sets together, or any number where the largest counts"
+            .into(),
+    }
 }
 
 impl Lowered {

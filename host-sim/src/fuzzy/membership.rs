@@ -72,6 +72,24 @@ impl Shape {
         }
     }
 
+    /// The degrees just before `x` and just behind it: where the shape jumps, other ones than at `x` itself.
+    pub fn beside(&self, x: f64) -> [f64; 2] {
+        let at = self.degree(x);
+        match *self {
+            Self::Singleton(only) if x == only => [0.0; 2],
+            Self::Triangle { left, right, .. } | Self::Trapezoid { left, right, .. } => {
+                // A foot is where the flank ends, however steep it is.
+                let foot = |is_foot: bool| if is_foot { 0.0 } else { at };
+                [foot(x == left), foot(x == right)]
+            }
+            Self::Points(ref points) => {
+                let same = || points.iter().filter(|point| point.0 == x);
+                [same().next(), same().next_back()].map(|point| point.map_or(at, |point| point.1))
+            }
+            _ => [at; 2],
+        }
+    }
+
     /// Where the degree jumps, or is one at a single value.
     pub fn jumps(&self) -> Vec<f64> {
         let ends = match *self {
@@ -237,6 +255,26 @@ mod tests {
             [0.9, 1.0].map(|x| Shape::Singleton(1.0).degree(x)),
             [0.0, 1.0]
         );
+    }
+
+    #[test]
+    fn beside_a_jump_the_degree_is_another_on_each_side() {
+        let points = |all: &[(f64, f64)]| Shape::Points(all.to_vec());
+        let spike = points(&[(0.0, 0.25), (1.0, 0.25), (1.0, 1.0), (1.0, 0.5), (2.0, 0.0)]);
+        assert_eq!(spike.beside(1.0), [0.25, 0.5]);
+        assert_eq!(spike.beside(0.5), [0.25; 2]);
+        let saw = points(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0)]);
+        assert_eq!((saw.degree(1.0), saw.beside(1.0)), (0.0, [1.0, 0.0]));
+        let trapezoid = |left, rise, fall, right| Shape::Trapezoid {
+            left,
+            rise,
+            fall,
+            right,
+        };
+        assert_eq!(trapezoid(0.0, 0.0, 1.0, 1.0).beside(0.0), [0.0, 1.0]);
+        assert_eq!(trapezoid(0.0, 0.0, 1.0, 1.0).beside(1.0), [1.0, 0.0]);
+        assert_eq!(trapezoid(0.0, 1.0, 2.0, 4.0).beside(3.0), [0.5; 2]);
+        assert_eq!(Shape::Singleton(1.0).beside(1.0), [0.0; 2]);
     }
 
     /// Between neighbouring knots every shape is monotone, and reach and fill stay as they are.

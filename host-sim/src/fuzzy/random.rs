@@ -35,6 +35,75 @@ pub fn system(rng: &mut impl Rng) -> System {
     }
 }
 
+/// Such a system of three or four inputs whose terms stand on whole numbers: flanks are often upright, points often jump, once
+/// or twice at one value, and an input has so many knots that no grid has them all. Some have a tooth or a spike so narrow that
+/// a grid sees nothing of it.
+pub fn stepped(rng: &mut impl Rng) -> System {
+    let mut stepped = system(rng);
+    while stepped.inputs.len() < 3 {
+        stepped = system(rng);
+    }
+    for input in &mut stepped.inputs {
+        let start = rng.random_range(-20..=5);
+        let range = start..=start + rng.random_range(8..=30);
+        for term in &mut input.terms {
+            term.shape = whole(rng, &range);
+        }
+        input.range = f64::from(*range.start())..=f64::from(*range.end());
+    }
+    stepped
+}
+
+/// A shape on whole numbers in and around a range.
+fn whole(rng: &mut impl Rng, range: &RangeInclusive<i32>) -> Shape {
+    let (start, end) = (*range.start(), *range.end());
+    let at = |rng: &mut dyn Rng, count: usize| {
+        let mut at: Vec<i32> = (0..count)
+            .map(|_| rng.random_range(start - 1..=end + 1))
+            .collect();
+        at.sort_unstable();
+        // Not all at one place: that is no triangle.
+        at[count - 1] += i32::from(at[0] == at[count - 1]);
+        at.into_iter().map(f64::from).collect::<Vec<f64>>()
+    };
+    match rng.random_range(0..6) {
+        0 => {
+            let at = at(rng, 3);
+            Shape::Triangle {
+                left: at[0],
+                peak: at[1],
+                right: at[2],
+            }
+        }
+        1 => {
+            let at = at(rng, 4);
+            Shape::Trapezoid {
+                left: at[0],
+                rise: at[1],
+                fall: at[2],
+                right: at[3],
+            }
+        }
+        2 => Shape::Singleton(f64::from(rng.random_range(start..=end))),
+        3 => {
+            let width = 10.0_f64.powf(rng.random_range(-4.0..0.0));
+            let at = f64::from(rng.random_range(start + 1..end));
+            let tooth = [(at - width, 0.0), (at, 1.0), (at, 0.0), (at + width, 0.0)];
+            let spike = [(at - width, 0.0), (at, 0.0), (at, 1.0), (at + width, 0.0)];
+            Shape::Points(if rng.random_bool(0.5) { tooth } else { spike }.to_vec())
+        }
+        _ => {
+            let at = {
+                let count = rng.random_range(3..=12);
+                at(rng, count)
+            };
+            // Feet and shoulders more often than anything between them.
+            let degree = |rng: &mut dyn Rng| [0.0, 1.0, 0.0, 1.0, 0.25][rng.random_range(0..5)];
+            Shape::Points(at.into_iter().map(|x| (x, degree(rng))).collect())
+        }
+    }
+}
+
 fn input(rng: &mut impl Rng, index: usize) -> Input {
     let range = range(rng);
     let shapes = if rng.random_bool(0.5) {

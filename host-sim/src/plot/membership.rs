@@ -305,8 +305,17 @@ fn names(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
         .collect();
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut ends = [f64::NEG_INFINITY; 2];
-    for (at, index) in places {
-        let name = fitted(&variable.terms[index].name, 13.5, 120.0);
+    // Terms at one place are named together, in the first one's colour.
+    let same = |a: &(f64, usize), b: &(f64, usize)| {
+        (panel.at(a.0, 1.0).0 - panel.at(b.0, 1.0).0).abs() < 1.0
+    };
+    for together in places.chunk_by(same) {
+        let (at, index) = together[0];
+        let all: Vec<&str> = together
+            .iter()
+            .map(|(_, index)| variable.terms[*index].name.as_str())
+            .collect();
+        let name = fitted(&all.join(", "), 13.5, 120.0 * all.len() as f64);
         let width = text_width(&name, 13.5);
         let x = panel.at(at, 1.0).0;
         if x < panel.rect.left - 1.0 || x > panel.rect.right + 1.0 {
@@ -380,6 +389,17 @@ mod tests {
         ] {
             assert!(svg.contains(text), "{text}");
         }
+    }
+
+    #[test]
+    fn terms_at_one_place_are_named_together() {
+        let mut variables = variables();
+        for name in ["beside", "across"] {
+            let mut twin = variables[0].terms[1].clone();
+            twin.name = name.to_owned();
+            variables[0].terms.push(twin);
+        }
+        assert!(drawn(&variables).contains("abeam, beside, across"));
     }
 
     #[test]

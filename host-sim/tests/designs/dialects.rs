@@ -329,6 +329,13 @@ fn numbers_of_shapes_stand_where_each_format_has_them() {
         right: 2.0,
     };
     let points = Shape::Points(vec![(0.0, 0.25), (1.0, 0.75), (1.0, 1.0)]);
+    let upright = Shape::Triangle {
+        left: 1.0,
+        peak: 1.0,
+        right: 2.0,
+    };
+    // At its end the last point counts: it is no rectangle, which has its end.
+    let open = Shape::Points(vec![(1.0, 0.0), (1.0, 1.0), (2.0, 1.0), (2.0, 0.0)]);
     let fll = [
         ("Gaussian 3 0.5", &gaussian),
         ("GaussianProduct 2 0.25 4 0.75", &two_sided),
@@ -357,8 +364,10 @@ fn numbers_of_shapes_stand_where_each_format_has_them() {
         ("SShape 1 2", &s),
         ("ZShape 1 2", &z),
         ("(1, 1) (2, 0)", &down),
-        ("(1, 0) (1, 1) (2, 1) (2, 0)", &block),
+        ("(1, 0) (1, 1) (2, 1) (2, 0)", &open),
         ("TRAPE 1 1 2 2", &block),
+        ("(1, 0) (1, 1) (2, 0)", &upright),
+        ("TRIAN 1 1 2", &upright),
         ("4", &Shape::Singleton(4.0)),
         ("(0, 0.25) (1, 0.75) (1, 1)", &points),
     ];

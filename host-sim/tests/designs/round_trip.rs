@@ -73,3 +73,25 @@ proptest! {
         }
     }
 }
+
+/// fuzzylite's Discrete has its last point's degree at a jump, its Triangle the peak's.
+#[test]
+fn what_ends_in_a_jump_is_the_same_in_every_format() {
+    let text = "Engine: e\nInputVariable: x\n  range: 0 10\n  \
+         term: saw Discrete 0 0 5 1 5 0\n  term: box Discrete 3 0 3 1 6 1 6 0\n  \
+         term: peak Triangle 0 5 5\n  term: wall Trapezoid 0 3 6 6\n  term: foot Discrete 3 0 3 1 6 0\n\
+         OutputVariable: y\n  range: 0 1\n  defuzzifier: WeightedAverage\n  term: p Constant 1\n\
+         RuleBlock: r\n  activation: General\n  rule: if x is saw then y is p\n";
+    let system = read(text, Format::Fll).without_places();
+    let degrees = |system: &System, x: f64| -> Vec<f64> {
+        let terms = &system.inputs[0].terms;
+        terms.iter().map(|term| term.shape.degree(x)).collect()
+    };
+    assert_eq!(degrees(&system, 5.0), [0.0, 1.0, 1.0, 1.0, 1.0 / 3.0]);
+    assert_eq!(degrees(&system, 6.0), [0.0, 0.0, 0.0, 1.0, 0.0]);
+    assert_eq!(degrees(&system, 3.0), [0.6, 1.0, 0.6, 1.0, 1.0]);
+    let through_fll = read(&fll::write(&system).unwrap(), Format::Fll);
+    let through_fcl = read(&fcl::write(&system).unwrap(), Format::Fcl);
+    assert_eq!(through_fll.without_places(), system);
+    assert_eq!(through_fcl.without_places(), system);
+}

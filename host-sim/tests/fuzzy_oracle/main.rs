@@ -243,6 +243,17 @@ fn random_systems_agree_with_fuzzylite() {
     }
 }
 
+#[test]
+fn random_steps_agree_with_fuzzylite() {
+    let mut rng = Pcg64Mcg::seed_from_u64(41);
+    let mut systems: Vec<System> = (0..80).map(|_| random::stepped(&mut rng)).collect();
+    if let Some(seen) = agree(&mut systems, &mut rng) {
+        assert!(seen.values > 100 * systems.len(), "{seen:?}");
+        // A third of the points are at the jumps, where fixed point is not compared.
+        assert!(seen.fixed > 10 * systems.len(), "{seen:?}");
+    }
+}
+
 /// A curve on a part of 3e-6 to 5e-5 of its input's range, beside a weak rule that holds everywhere: what the curve is off in
 /// fixed point, the output is off, and nothing else is.
 fn steep(rng: &mut impl Rng) -> System {

@@ -438,11 +438,54 @@ const fn sets(
         sum = sum.saturating_add(weight);
         t += 1;
     }
-    // What is added at one place has 32 bits. The largest of several never has more than a degree.
-    if matches!(merge, Merge::Sum) && sum > u32::MAX as u64 {
+    // The largest of several never has more than a degree.
+    if matches!(merge, Merge::Sum) && sum >= SAMPLE_SUM && !sums_fit(blocks, o, terms) {
         return Err(Flaw::Accumulator { output: o });
     }
     Ok(())
+}
+
+/// What is added at one sample of a centroid is below this: over all samples, [`Samples::MOST`], that makes an area below the
+/// 2^45 that a quotient takes.
+const SAMPLE_SUM: u64 = 1 << 35;
+
+/// Whether what rules add at any sample is below [`SAMPLE_SUM`]: no rule adds more than its weight, nor more than its set has
+/// there.
+const fn sums_fit(blocks: &[Block<'_>], o: usize, terms: &[Set<'_>]) -> bool {
+    let (mut weights, mut rules) = ([0u64; MAX_TERMS], [0u64; MAX_TERMS]);
+    let mut b = 0;
+    while b < blocks.len() {
+        let mut r = 0;
+        while r < blocks[b].rules.len() {
+            let rule = &blocks[b].rules[r];
+            let mut t = 0;
+            while t < rule.then.len() {
+                if rule.then[t].0 as usize == o {
+                    let term = rule.then[t].1 as usize;
+                    weights[term] = weights[term].saturating_add(rule.weight.bits() as u64);
+                    rules[term] += 1;
+                }
+                t += 1;
+            }
+            r += 1;
+        }
+        b += 1;
+    }
+    let mut s = 0;
+    while s < terms[0].len() {
+        let (mut sum, mut t) = (0u64, 0);
+        while t < terms.len() {
+            // A grade is a degree with nine bits less.
+            let most = rules[t].saturating_mul((terms[t][s].bits() as u64) << 9);
+            sum = sum.saturating_add(if most < weights[t] { most } else { weights[t] });
+            t += 1;
+        }
+        if sum >= SAMPLE_SUM {
+            return false;
+        }
+        s += 1;
+    }
+    true
 }
 
 /// A term of every input, for which no rule concludes anything about the output.

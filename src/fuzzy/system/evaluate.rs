@@ -164,7 +164,8 @@ impl Fired<'_> {
     ) -> (i32, u64) {
         let (mut moment, mut area) = (0u64, 0u64);
         for place in 0..samples.count() {
-            let mut merged = 0u32;
+            // A sum has more than 32 bits where hundreds of rules conclude the same; the largest never has.
+            let mut merged = 0u64;
             self.conclusions(output, |term, degree, implication| {
                 let set = terms.get(usize::from(term)).copied().unwrap_or_default();
                 let grade = set.get(place).copied().unwrap_or(Grade::ZERO);
@@ -175,12 +176,12 @@ impl Fired<'_> {
                     Norm::Product => degree.product(member),
                 };
                 merged = match merge {
-                    Merge::Sum => merged.wrapping_add(implied.bits()),
-                    Merge::Max => Degree::known(merged).most(implied).bits(),
+                    Merge::Sum => merged.wrapping_add(implied.bits().into()),
+                    Merge::Max => Degree::known(merged as u32).most(implied).bits().into(),
                 };
             });
-            area = area.wrapping_add(merged.into());
-            moment = moment.wrapping_add(u64::from(merged).wrapping_mul(place as u64));
+            area = area.wrapping_add(merged);
+            moment = moment.wrapping_add(merged.wrapping_mul(place as u64));
         }
         let (top, bottom) = reduced(moment, area);
         let top = top.wrapping_shl(Samples::FRACTION);

@@ -156,7 +156,8 @@ pub enum Flaw {
         /// How many inputs there are.
         inputs: usize,
     },
-    /// Weighted sums that could be too large: conclusions with too many or too large terms.
+    /// Weighted sums that could be too large: a weighted average of 2^62 or more (rules · the largest conclusion in steps · 2^24),
+    /// a centroid to which more than 2047 rules could add fully at one sample.
     Accumulator {
         /// The output.
         output: usize,

@@ -11,6 +11,9 @@ use host_sim::bench::results::Results;
 use host_sim::replay;
 use std::path::Path;
 
+/// What [`write`] makes beside `runs`.
+pub const FILES: [&str; 3] = ["table.txt", "per-world.csv", "index.html"];
+
 /// Writes `table.txt`, `per-world.csv`, `runs/*.html` and last of all `index.html`.
 pub fn write(
     folder: &Path,

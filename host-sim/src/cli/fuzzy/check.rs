@@ -29,7 +29,7 @@ pub struct CheckArguments {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FINDING,…")]
     deny: Vec<Finding>,
     /// Fail if fixed point may be off by more than this, in per cent of an output's range: the largest of what is printed as
-    /// "nowhere above".
+    /// "nowhere above"; with `--route fast` that route's alone.
     #[arg(long, value_parser = between(1e-9, 100.0), value_name = "PERCENT", allow_hyphen_values = true)]
     max_error: Option<f64>,
     /// Which part of the library is to evaluate the design as a Rust module, see `convert`: the fast one has an error of its own.
@@ -81,6 +81,7 @@ pub fn execute(arguments: &CheckArguments) -> anyhow::Result<()> {
     progress.clear();
     let why = design.fixed.as_ref().err().map(ToString::to_string);
     let mut findings = Findings::new(&design.system, &report, design.title(), why);
+    findings.points_asked = points;
     for (errors, bound) in findings.errors.iter_mut().zip(fast.iter().flatten()) {
         errors.fast_route = Some(*bound);
     }
@@ -91,7 +92,7 @@ pub fn execute(arguments: &CheckArguments) -> anyhow::Result<()> {
     let mut said = denied(&findings, &arguments.deny);
     said.extend(limit::broken(&design.system, &report));
     if let Some(most) = arguments.max_error {
-        said.extend(limit::beyond(&findings, most));
+        said.extend(limit::beyond(&findings, arguments.route, most));
     }
     if !said.is_empty() {
         bail!("{}", said.join("; "));

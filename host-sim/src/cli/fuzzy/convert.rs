@@ -111,9 +111,19 @@ fn check(arguments: &ConvertArguments) -> Result<(), BadInput> {
         None if arguments.to == To::C => Err(BadInput(
             "--to c writes two files; --out says where: NAME.c, or a folder for both".into(),
         )),
+        Some(out) if arguments.to != To::C && is_folder(out) => Err(BadInput(format!(
+            "--out {}: is a folder; --to {} writes one file, so allowed is a file's name",
+            out.display(),
+            said(arguments.to)
+        ))),
         Some(out) => not_the_design(arguments, out),
         None => Ok(()),
     }
+}
+
+/// Whether it is one, or is written as one.
+fn is_folder(out: &Path) -> bool {
+    out.is_dir() || out.as_os_str().to_string_lossy().ends_with('/')
 }
 
 /// Refuses to write over the design itself: what its file says beside the model, such as comments, would be lost.

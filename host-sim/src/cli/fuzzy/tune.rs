@@ -35,8 +35,9 @@ point.
 Cost with --scenario: the mean over all runs of: RMS cross-track error of all ticks that follow the path, in robot radii; \
 plus 0.1 · time, in multiples of what the path takes at top speed; plus the mean change of the yaw rate from tick to \
 tick, as a share of what the robot can; plus 10 a collision; plus 10 if the end is not reached. \
-The design is the follower's (inputs phi and d, outputs speed and deflection, 25 rules: see designs/fine.fll); its quick \
-route reads even terms, so only the outputs move.
+The design is the follower's (inputs phi and d, outputs speed and deflection, 25 rules: see designs/fine.fll). Its quick \
+route reads even terms: the outputs move, and d's peaks together, by their distance; phi's are the robot's angle and stay. On the \
+robot the distance divides Follower::distance_scale.
 
 Files in DIR: tuned.fll (tuned.fcl for an FCL design and for MATLAB's with centroids), tuned.rs (as convert makes it of that), report.json, memberships.svg and .png (before and after), state.json (after every \
 generation; --resume goes on from it: same result as without the break, but for the count of those known).
@@ -109,11 +110,9 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     let mut selection = Selection {
         only: named(system, "--only", &arguments.only)?,
         fix: named(system, "--fix", &arguments.fix)?,
+        even: Vec::new(),
     };
-    if goal.only_outputs() {
-        let inputs = (0..system.inputs.len()).map(|index| (Variable::Input(index), None));
-        selection.fix.extend(inputs);
-    }
+    goal.hold(system, &mut selection);
     let question = Question {
         design: Question::fingerprint(&format!(
             "{:?}",

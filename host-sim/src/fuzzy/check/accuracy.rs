@@ -8,6 +8,10 @@ use crate::fuzzy::model::{Output, System};
 /// the last).
 pub const STRENGTHS: [f64; 4] = [0.5, 0.125, 1.0 / 64.0, 0.0];
 
+/// Nothing is compared where the strongest rule fires with less, and yet fires: below 1e-308 a degree in `f64` has few
+/// digits and then one, and products with it even earlier, so that the quotient of two of them is anything.
+pub const FAINTEST: f64 = 1e-290;
+
 /// The error of one output over the points of one class.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Class {
@@ -57,7 +61,7 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// Takes one point into account: what every output is in `f64` and in fixed point. Where `f64` has no value there is
-    /// nothing to compare, and where no rule fires both take the default.
+    /// nothing to compare, nor below [`FAINTEST`], and where no rule fires both take the default.
     pub fn see(
         all: &mut [Self],
         system: &System,
@@ -70,7 +74,7 @@ impl Accuracy {
             let (Some(expected), strength) = (value(exact), strength(system, index, exact)) else {
                 continue;
             };
-            if strength <= 0.0 {
+            if strength < FAINTEST {
                 continue;
             }
             // No value at all is as wrong as the range is wide.

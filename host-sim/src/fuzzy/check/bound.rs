@@ -175,7 +175,7 @@ mod tests {
     use crate::fuzzy::check::{Jumps, class, strength};
     use crate::fuzzy::evaluate::{Evaluator, Exact};
     use crate::fuzzy::lower::lower;
-    use crate::fuzzy::model::{Input, Shape};
+    use crate::fuzzy::model::{Input, Rule, Shape, Term};
     use crate::fuzzy::random;
     use crate::fuzzy::sample::{fan, rule};
     use rand::{RngExt, SeedableRng};
@@ -219,10 +219,20 @@ mod tests {
 
     #[test]
     fn random_systems_stay_within() {
-        let mut rng = Pcg64Mcg::seed_from_u64(11);
+        stay_within(30, 11, random::system, STRENGTHS.len());
+    }
+
+    #[test]
+    fn random_steps_stay_within() {
+        // Where next to nothing fires beside a step, the bound is the whole range and the error next to nothing.
+        stay_within(30, 12, random::stepped, STRENGTHS.len() - 1);
+    }
+
+    fn stay_within(systems: usize, seed: u64, random: fn(&mut Pcg64Mcg) -> System, near: usize) {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut tightest = [0.0_f64; STRENGTHS.len()];
-        for _ in 0..30 {
-            let system = random::system(&mut rng);
+        for _ in 0..systems {
+            let system = random(&mut rng);
             let Ok(lowered) = lower(&system) else {
                 continue;
             };
@@ -244,7 +254,58 @@ mod tests {
             }
         }
         // Bounds that nothing comes near would hold as well, and tell nothing.
-        assert!(tightest.iter().all(|share| *share > 0.05), "{tightest:?}");
+        let near = &tightest[..near];
+        assert!(near.iter().all(|share| *share > 0.05), "{tightest:?}");
+    }
+
+    /// A tooth that ends in a jump, narrower than any box of three inputs with so many knots.
+    #[test]
+    fn a_tooth_in_the_middle_of_a_box_is_bounded() {
+        let mut system = fan();
+        let terms: Vec<Shape> = (0..9)
+            .map(|i| f64::from(i) / 8.0)
+            .map(|peak| Shape::Triangle {
+                left: peak - 0.125,
+                peak,
+                right: peak + 0.125,
+            })
+            .collect();
+        let tooth = Shape::Points(vec![(0.307_14, 0.0), (0.307_2, 1.0), (0.307_2, 0.0)]);
+        let flat = Shape::Ramp {
+            from: -2.0,
+            to: -1.0,
+        };
+        system.inputs.push(system.inputs[0].clone());
+        let sample = system.inputs[0].terms[0].clone();
+        for (index, input) in system.inputs.iter_mut().enumerate() {
+            let extra = [tooth.clone(), flat.clone()];
+            let shapes = terms
+                .iter()
+                .chain(extra.iter().take(2 * usize::from(index == 0)));
+            input.name = format!("input{index}");
+            input.range = 0.0..=1.0;
+            input.terms = shapes
+                .map(|shape| Term {
+                    shape: shape.clone(),
+                    ..sample.clone()
+                })
+                .collect();
+        }
+        let weighted = |literal, conclusion, weight| Rule {
+            weight,
+            ..rule(&[literal], &[conclusion])
+        };
+        system.blocks[0].rules = vec![
+            weighted((0, 9, false), (0, 2), 1.0),
+            weighted((0, 10, false), (0, 0), 0.5),
+        ];
+        let lowered = lower(&system).unwrap();
+        let bounds = bounds(&system, &lowered)[0];
+        let measured = measured(&system, &lowered, &mut Pcg64Mcg::seed_from_u64(3), 20_000)[0];
+        assert!(measured.iter().any(|off| *off > 1.0), "{measured:?}");
+        for (measured, bound) in measured.into_iter().zip(bounds) {
+            assert!(measured <= bound, "{measured} above {bound}");
+        }
     }
 
     /// One steep curve beside a weak rule that holds everywhere: what the curve is off is what the output is off.

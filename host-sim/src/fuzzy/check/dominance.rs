@@ -3,6 +3,7 @@
 use crate::fuzzy::evaluate::{Evaluation, rules};
 use crate::fuzzy::model::{Merge, System};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Gathers, point by point, which rules are the strongest of those that conclude the same.
 #[derive(Clone, Debug)]
@@ -11,11 +12,15 @@ pub struct Dominance {
     rivals: Vec<Vec<usize>>,
     /// Each rule: whether it counts for sure, as it adds to others or is stronger than all somewhere.
     counts: Vec<bool>,
-    /// Rules that were equally strong somewhere: one of each is enough.
-    ties: BTreeSet<Vec<usize>>,
-    /// How often a rule was no stronger than which other.
-    outdone: BTreeMap<(usize, usize), usize>,
+    /// Rules that were equally strong somewhere, or one that was stronger than all: one of each is enough.
+    ties: BTreeSet<Arc<[usize]>>,
+    /// How often a rule was no stronger than the others of which tie. Some ties a rule are remembered, so that thousands
+    /// of rules that fire together do not take all memory.
+    outdone: Vec<BTreeMap<Arc<[usize]>, usize>>,
 }
+
+/// Ties a rule.
+const MOST_TIES: usize = 32;
 
 impl Dominance {
     /// Nothing seen yet.
@@ -35,9 +40,9 @@ impl Dominance {
         }
         Self {
             rivals: groups.into_values().collect(),
+            outdone: vec![BTreeMap::new(); counts.len()],
             counts,
             ties: BTreeSet::new(),
-            outdone: BTreeMap::new(),
         }
     }
 
@@ -50,16 +55,16 @@ impl Dominance {
             if most <= 0.0 {
                 continue;
             }
-            let tied: Vec<usize> = group.iter().copied().filter(strongest).collect();
-            for &rule in group.iter().filter(|rule| degree(**rule) > 0.0) {
-                for &by in tied.iter().filter(|by| **by != rule && !self.counts[rule]) {
-                    *self.outdone.entry((rule, by)).or_default() += 1;
-                }
+            let tied: Arc<[usize]> = group.iter().copied().filter(strongest).collect();
+            if let [only] = *tied {
+                self.counts[only] = true;
+                self.outdone[only].clear();
+            } else if !self.ties.contains(&tied) {
+                self.ties.insert(Arc::clone(&tied));
             }
-            match tied.as_slice() {
-                [only] => self.counts[*only] = true,
-                _ => {
-                    self.ties.insert(tied);
+            for &rule in group.iter().filter(|rule| degree(**rule) > 0.0) {
+                if !self.counts[rule] {
+                    remember(&mut self.outdone[rule], &tied, 1);
                 }
             }
         }
@@ -71,22 +76,38 @@ impl Dominance {
             *mine |= theirs;
         }
         self.ties.extend(other.ties);
-        for (pair, times) in other.outdone {
-            *self.outdone.entry(pair).or_default() += times;
+        let all = self.outdone.iter_mut().zip(other.outdone).zip(&self.counts);
+        for ((mine, theirs), counts) in all {
+            if *counts {
+                mine.clear();
+                continue;
+            }
+            for (tie, times) in theirs {
+                remember(mine, &tie, times);
+            }
         }
         self
     }
 
-    /// Rules that fired somewhere and can all be left out, each with one that is kept and outdid it most often.
+    /// Rules that fired somewhere and can all be left out, each with the one that is kept and outdid it most often, as far as that is
+    /// remembered.
     pub fn dominated(&self) -> Vec<(usize, usize)> {
         let kept = self.kept();
         let mut found = Vec::new();
-        for rule in (0..kept.len()).filter(|&rule| !kept[rule]) {
-            let by = self.outdone.range((rule, 0)..=(rule, usize::MAX));
-            let by = by
-                .filter(|((_, by), _)| kept[*by])
-                .max_by_key(|(_, times)| **times);
-            found.extend(by.map(|(pair, _)| *pair));
+        for (rule, ties) in self
+            .outdone
+            .iter()
+            .enumerate()
+            .filter(|(rule, _)| !kept[*rule])
+        {
+            let mut by: BTreeMap<usize, usize> = BTreeMap::new();
+            for (tie, times) in ties {
+                for &other in tie.iter().filter(|other| kept[**other]) {
+                    *by.entry(other).or_default() += times;
+                }
+            }
+            let most = by.into_iter().max_by_key(|(_, times)| *times);
+            found.extend(most.map(|(by, _)| (rule, by)));
         }
         found
     }
@@ -94,19 +115,48 @@ impl Dominance {
     /// Rules that count for sure, and of the ties without one the rule that settles the most, the first of equals.
     fn kept(&self) -> Vec<bool> {
         let mut kept = self.counts.clone();
-        let mut open: Vec<&Vec<usize>> = self.ties.iter().collect();
-        loop {
-            open.retain(|tie| !tie.iter().any(|&rule| kept[rule]));
-            let mut settles: BTreeMap<usize, usize> = BTreeMap::new();
-            for &rule in open.iter().copied().flatten() {
-                *settles.entry(rule).or_default() += 1;
-            }
-            // Backwards: of equals the last is taken.
-            match settles.into_iter().rev().max_by_key(|(_, ties)| *ties) {
-                Some((rule, _)) => kept[rule] = true,
-                None => return kept,
+        let mut of: Vec<Vec<usize>> = vec![Vec::new(); kept.len()];
+        let mut settles = vec![0_usize; kept.len()];
+        let open = self
+            .ties
+            .iter()
+            .filter(|tie| !tie.iter().any(|&rule| kept[rule]));
+        let ties: Vec<&Arc<[usize]>> = open.collect();
+        for (index, tie) in ties.iter().enumerate() {
+            for &rule in tie.iter() {
+                of[rule].push(index);
+                settles[rule] += 1;
             }
         }
+        let mut settled = vec![false; ties.len()];
+        loop {
+            // Backwards: of equals the last is taken.
+            let most = settles
+                .iter()
+                .enumerate()
+                .rev()
+                .max_by_key(|(_, ties)| **ties);
+            let Some((rule, _)) = most.filter(|(_, ties)| **ties > 0) else {
+                return kept;
+            };
+            kept[rule] = true;
+            for &index in &of[rule] {
+                if std::mem::replace(&mut settled[index], true) {
+                    continue;
+                }
+                for &other in ties[index].iter() {
+                    settles[other] -= 1;
+                }
+            }
+        }
+    }
+}
+
+fn remember(ties: &mut BTreeMap<Arc<[usize]>, usize>, tie: &Arc<[usize]>, times: usize) {
+    if let Some(known) = ties.get_mut(tie) {
+        *known += times;
+    } else if ties.len() < MOST_TIES {
+        ties.insert(Arc::clone(tie), times);
     }
 }
 

@@ -1,12 +1,12 @@
 //! The points at which a system is looked at when pieces cannot tell: a dense grid with every knot in it.
 
 use crate::fuzzy::evaluate::rules;
-use crate::fuzzy::model::{Defuzzifier, Input, Shape, System};
+use crate::fuzzy::model::{Defuzzifier, Input, Merge, Shape, System};
 
 /// Points of a grid unless told otherwise.
 pub const POINTS: usize = 100_000;
-/// Degrees and samples that a grid may cost before it gets thinner, and what it has at least all the same.
-const MOST_WORK: usize = 2_000_000_000;
+/// Degrees and samples that a grid may cost before it gets thinner, some seconds; and what it has at least all the same.
+const MOST_WORK: usize = 4_000_000_000;
 const LEAST_POINTS: usize = 2_000;
 /// With fewer even values an input than this, the knots are left out.
 const LEAST_EACH: usize = 5;
@@ -122,24 +122,44 @@ fn knots(input: &Input) -> Vec<f64> {
     knots
 }
 
-/// What one evaluation costs, about: degrees of rules and samples of sets.
+/// What a point costs, about: degrees of rules and samples of sets, in `f64` and in fixed point, and comparing the rules with each
+/// other.
 fn cost(system: &System) -> usize {
-    let rules = rules(system).count();
-    let samples: usize = system
-        .outputs
-        .iter()
-        .map(|output| match output.defuzzifier {
-            Defuzzifier::WeightedAverage => 1,
-            Defuzzifier::Centroid { points, .. } => points * rules.min(2 * output.terms.len()),
-        })
-        .sum();
-    (rules * 8 + samples).max(1)
+    let count = rules(system).count();
+    let conclusions: usize = rules(system).map(|(_, rule)| rule.conclusions.len()).sum();
+    let outputs = system.outputs.iter().map(|output| {
+        let terms = output.terms.len();
+        match (output.defuzzifier, output.merge) {
+            (Defuzzifier::WeightedAverage, Merge::Sum) => 1 + conclusions,
+            (Defuzzifier::WeightedAverage, Merge::Max) => 1 + conclusions * terms,
+            // In `f64` rules that conclude the same are one; fixed point looks at every rule at every sample.
+            (Defuzzifier::Centroid { points, .. }, _) => {
+                points * (count.min(2 * terms) + conclusions)
+            }
+        }
+    });
+    (count * 24 + outputs.sum::<usize>()).max(1)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::fuzzy::sample::fan;
+
+    #[test]
+    fn of_thousands_of_rules_it_is_thinner() {
+        let mut fan = fan();
+        let sure = fan.blocks[0].rules.clone();
+        assert!(Grid::new(&fan, POINTS).len() > POINTS * 9 / 10);
+        fan.blocks[0].rules = sure.iter().cycle().take(4096).cloned().collect();
+        fan.outputs[0].merge = Merge::Max;
+        fan.outputs[0].defuzzifier = Defuzzifier::Centroid {
+            points: 200,
+            sampling: crate::fuzzy::model::Sampling::Middles,
+        };
+        let len = Grid::new(&fan, POINTS).len();
+        assert!((LEAST_POINTS / 2..20_000).contains(&len), "{len}");
+    }
 
     #[test]
     fn it_spans_the_ranges_and_has_every_knot() {

@@ -40,7 +40,7 @@ impl Ripple {
 }
 
 /// Looks along every input at every line of the grid; `values` holds an output's value at each of its points, NaN where it
-/// has none: there a line ends and the next begins.
+/// has none: there a line ends and the next begins. What is infinite is passed over.
 pub fn ripples(system: &System, grid: &Grid, output: usize, values: &[f64]) -> Vec<Ripples> {
     let range = &system.outputs[output].range;
     let least = LEAST * (range.end() - range.start());
@@ -53,6 +53,7 @@ pub fn ripples(system: &System, grid: &Grid, output: usize, values: &[f64]) -> V
             let axis = &grid.axes[along];
             let points: Vec<(f64, f64)> = (0..each[along])
                 .map(|i| (axis[i], values[first + i * stride]))
+                .filter(|(_, y)| !y.is_infinite())
                 .collect();
             let found = points
                 .split(|(_, y)| y.is_nan())

@@ -1,6 +1,6 @@
 //! One look at every point of the grid, for all that is found there.
 
-use super::accuracy::Accuracy;
+use super::accuracy::{Accuracy, FAINTEST, strength};
 use super::dominance::Dominance;
 use super::grid::Grid;
 use super::jumps::Jumps;
@@ -35,7 +35,8 @@ pub struct Seen {
     pub accuracy: Vec<Accuracy>,
     /// Gaps, if it was for them.
     pub sampled: Sampled,
-    /// Point after point, in each every output, NaN where it has no value; if they are kept.
+    /// Point after point, in each every output, NaN where it has no value, infinite where that is not to be trusted (see
+    /// [`FAINTEST`]); if they are kept.
     pub values: Vec<f64>,
 }
 
@@ -74,9 +75,18 @@ impl Sweep<'_> {
             seen.sampled.see(&point, &evaluation);
         }
         if self.keep {
-            let values = evaluation.outputs.iter();
-            seen.values
-                .extend(values.map(|value| value.unwrap_or(f64::NAN)));
+            let values = evaluation.outputs.iter().enumerate();
+            seen.values.extend(values.map(|(output, value)| {
+                let faint = || {
+                    let strength = strength(self.system, output, &evaluation);
+                    strength > 0.0 && strength < FAINTEST
+                };
+                match value {
+                    None => f64::NAN,
+                    Some(_) if faint() => f64::INFINITY,
+                    Some(value) => *value,
+                }
+            }));
         }
         if let Some((fixed, _)) = fixed.filter(|(_, jumps)| !jumps.near(&point)) {
             let found = fixed.evaluate(&point);

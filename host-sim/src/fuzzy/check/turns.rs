@@ -1,6 +1,7 @@
 //! Rule tables whose conclusions do not run in one direction: along a row or a column they rise and fall again. That may
 //! be meant (a deflection that is greatest in the middle), or be a slip of one cell.
 
+use super::accuracy::FAINTEST;
 use crate::fuzzy::evaluate::{rules, samples};
 use crate::fuzzy::model::{Antecedent, Conclusion, Input, Output, System};
 use crate::fuzzy::picture;
@@ -36,7 +37,7 @@ pub enum NoTable {
     Cell(usize, usize),
     /// A term that is no number for all inputs, by its index.
     Linear(usize),
-    /// A term whose set is zero at every sample.
+    /// A term whose set is zero at every sample, or next to it.
     Unmet(usize),
 }
 
@@ -114,7 +115,7 @@ fn height(output: &Output, conclusion: &Conclusion) -> Option<f64> {
             let at = samples(output);
             let weight: f64 = at.iter().map(|&x| shape.degree(x)).sum();
             let sum: f64 = at.iter().map(|&x| x * shape.degree(x)).sum();
-            (weight > 0.0).then(|| sum / weight)
+            (weight >= FAINTEST).then(|| sum / weight)
         }
     }
 }

@@ -288,7 +288,8 @@ fn trapezoid([left, rise, fall, right]: [f64; 4]) -> Shape {
     }
 }
 
-/// Points; those of a ramp, a triangle or a trapezoid are one.
+/// Points; those of a ramp, a triangle or a trapezoid are one. Not those that end in a jump: there the last point counts, and
+/// with a triangle it would be its peak.
 fn points(source: Source<'_>, name: Token<'_>, given: &[Parameter]) -> Result<Shape, ReadError> {
     let pairs = given.len() / 2;
     if given.len() % 2 == 1 || !(2..=limits::POINTS).contains(&pairs) {
@@ -321,10 +322,10 @@ fn points(source: Source<'_>, name: Token<'_>, given: &[Parameter]) -> Result<Sh
     Ok(match *all.as_slice() {
         [(from, 0.0), (to, 1.0)] if from < to => Shape::Ramp { from, to },
         [(to, 1.0), (from, 0.0)] if to < from => Shape::Ramp { from, to },
-        [(left, 0.0), (peak, 1.0), (right, 0.0)] if left < right => {
+        [(left, 0.0), (peak, 1.0), (right, 0.0)] if peak < right => {
             Shape::Triangle { left, peak, right }
         }
-        [(left, 0.0), (rise, 1.0), (fall, 1.0), (right, 0.0)] if left < right => Shape::Trapezoid {
+        [(left, 0.0), (rise, 1.0), (fall, 1.0), (right, 0.0)] if fall < right => Shape::Trapezoid {
             left,
             rise,
             fall,

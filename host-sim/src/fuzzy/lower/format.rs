@@ -17,6 +17,9 @@ const WIDTH: f64 = 65_536.0;
 const MOST: f64 = 536_870_912.0;
 
 impl Format {
+    /// No range has fewer steps.
+    pub const LEAST_WIDTH: f64 = 256.0;
+
     /// For a range of this width, whose variable has numbers up to `magnitude`: 16 fractional bits, unless the range is then
     /// less than 2¹⁶ steps wide or a number more than 2²⁹ steps large. `None` if no format has room for both.
     pub fn of(width: f64, magnitude: f64) -> Option<Self> {
@@ -31,7 +34,7 @@ impl Format {
         while scaled(magnitude, fraction) > MOST && fraction > -1000 {
             fraction -= 1;
         }
-        (scaled(width, fraction) >= 256.0).then_some(Self { fraction })
+        (scaled(width, fraction) >= Self::LEAST_WIDTH).then_some(Self { fraction })
     }
 
     /// A value in steps, unrounded.

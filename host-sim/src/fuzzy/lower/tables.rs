@@ -145,8 +145,8 @@ pub enum Number {
 }
 
 impl Tables {
-    /// From a model.
-    pub(super) fn of(model: &model::System) -> Result<Self, LowerError> {
+    /// From a model, with fewer fractional bits of each output than it could have.
+    pub(super) fn of(model: &model::System, coarser: &[i32]) -> Result<Self, LowerError> {
         let inputs = model
             .inputs
             .iter()
@@ -156,7 +156,7 @@ impl Tables {
             .outputs
             .iter()
             .enumerate()
-            .map(|(index, this)| output(this, index, model, &inputs))
+            .map(|(index, this)| output(this, index, model, &inputs, coarser[index]))
             .collect::<Result<Vec<_>, _>>()?;
         let blocks = model.blocks.iter().map(block).collect::<Result<_, _>>()?;
         let mut tables = Self {
@@ -428,10 +428,12 @@ fn output(
     index: usize,
     model: &model::System,
     inputs: &[Input],
+    coarser: i32,
 ) -> Result<Output, LowerError> {
     let reach = reach(output, model);
-    let format = format(&output.range, [*reach.start(), *reach.end()].into_iter())
+    let mut format = format(&output.range, [*reach.start(), *reach.end()].into_iter())
         .ok_or_else(|| no_format(output.place, format!("the output `{}`", output.name)))?;
+    format.fraction -= coarser;
     let middle = output.range.start() + (output.range.end() - output.range.start()) / 2.0;
     let default = output.default.unwrap_or(middle);
     let range = if output.clamp {

@@ -129,6 +129,15 @@ impl Data {
         })
     }
 
+    /// How many rows have an input outside of its range: there the design is tuned at the range's end, or beyond its terms.
+    pub fn outside(&self, system: &System) -> usize {
+        let is_outside = |row: &&Row| {
+            let mut inputs = system.inputs.iter().zip(&row.inputs);
+            inputs.any(|(input, x)| !input.range.contains(x))
+        };
+        self.rows.iter().filter(is_outside).count()
+    }
+
     /// Takes a share of the rows away, at random from a seed: what stays, and what was taken. Both keep the file's order.
     pub fn split(self, share: f64, seed: u64) -> (Self, Self) {
         let taken = (share * self.rows.len() as f64).round() as usize;

@@ -3,6 +3,8 @@
 //! * Knots of membership functions (peaks, feet, middles) that stand at the same value of a variable are one number: a
 //!   Ruspini partition stays one. They keep their order and a least distance. Those at the ends of the range or outside it
 //!   stay.
+//! * Where an input has to stay evenly divided, its knots move together: their distance is one number, a quarter of what the
+//!   range holds at least, and the first of them stays.
 //! * Constants keep their order, a least distance and the range; each is its own number.
 //! * Widths of curved functions are halved at least and doubled at most.
 //! * Terms of order 1: an input's coefficient moves as far as would carry the output four times through its range, the
@@ -22,6 +24,8 @@ pub struct Selection {
     pub only: Vec<(Variable, Option<usize>)>,
     /// Not these. A knot that one of them shares with another term stays.
     pub fix: Vec<(Variable, Option<usize>)>,
+    /// Inputs that stay evenly divided.
+    pub even: Vec<usize>,
 }
 
 impl Selection {
@@ -62,6 +66,8 @@ enum Rule {
     Factor,
     /// Moved by four units at most.
     Free,
+    /// Evenly spaced from this value on, the last number between these two. The only number in the vector is the last one's.
+    Even(f64, RangeInclusive<f64>),
 }
 
 /// A number that may stand on a ladder.
@@ -77,6 +83,9 @@ const LEAST: f64 = 0.01;
 const LEAST_CONSTANT: f64 = 0.001;
 /// Numbers are rounded to a power of ten not above this share of the range.
 const ROUND: f64 = 1e-5;
+/// Distances of [`Rule::Even`] numbers are multiples of a power of two not above this share of the range: so they are even in fixed
+/// point, too.
+const EVEN: f64 = 1e-3;
 /// Most units that a [`Rule::Free`] number moves.
 const FAR: f64 = 4.0;
 
@@ -96,7 +105,12 @@ impl Movable {
                 .filter(|(_, (slot, _))| slot.variable == variable)
                 .map(|(index, (slot, x))| (index, *slot, *x))
                 .collect();
-            groups.extend(ladders(&of, range(system, variable), selection));
+            match variable {
+                Variable::Input(index) if selection.even.contains(&index) => {
+                    groups.extend(evenly(&of, range(system, variable), selection));
+                }
+                _ => groups.extend(ladders(&of, range(system, variable), selection)),
+            }
             groups.extend(alone(system, &of, selection));
         }
         Self { start, groups }
@@ -104,7 +118,7 @@ impl Movable {
 
     /// Length of a vector.
     pub fn len(&self) -> usize {
-        self.groups.iter().map(|group| group.numbers.len()).sum()
+        self.groups.iter().map(Group::len).sum()
     }
 
     /// Whether nothing moves.
@@ -123,7 +137,7 @@ impl Movable {
         let mut excess = 0.0;
         let mut rest = vector;
         for group in &self.groups {
-            let (moves, after) = rest.split_at(group.numbers.len().min(rest.len()));
+            let (moves, after) = rest.split_at(group.len().min(rest.len()));
             rest = after;
             let (numbers, off) = group.moved(moves);
             excess += off;
@@ -146,6 +160,14 @@ impl Movable {
 }
 
 impl Group {
+    /// How many numbers of a vector are its own.
+    fn len(&self) -> usize {
+        match self.rule {
+            Rule::Even(..) => 1,
+            Rule::Ladder(..) | Rule::Factor | Rule::Free => self.numbers.len(),
+        }
+    }
+
     /// The numbers moved, and the square of what was not possible.
     fn moved(&self, by: &[f64]) -> (Vec<f64>, f64) {
         let limited = |most: f64| {
@@ -180,6 +202,23 @@ impl Group {
                 let moved = numbers.map(|((x, _), by)| x + by * self.unit);
                 (moved.collect(), excess)
             }
+            Rule::Even(first, last) => {
+                let count = self.numbers.len().max(1) as f64;
+                let start = self.numbers.last().map_or(*first, |(x, _)| *x);
+                let wanted = start + by.first().map_or(0.0, |x| x * self.unit);
+                let found = wanted.clamp(*last.start(), *last.end());
+                let step = (EVEN * self.unit).log2().floor().exp2();
+                let steps = ((found - first) / count / step).round();
+                let most = ((last.end() - first) / count / step).floor();
+                // As it is, if that is no round number.
+                let apart = if wanted == start {
+                    (start - first) / count
+                } else {
+                    steps.min(most) * step
+                };
+                let numbers = (1..=self.numbers.len()).map(|i| first + apart * i as f64);
+                (numbers.collect(), ((wanted - found) / self.unit).powi(2))
+            }
         }
     }
 }
@@ -198,6 +237,43 @@ fn range(system: &System, variable: Variable) -> &RangeInclusive<f64> {
         Variable::Input(index) => &system.inputs[index].range,
         Variable::Output(index) => &system.outputs[index].range,
     }
+}
+
+/// An input's knots, if they are evenly spaced and all of them may move; the first of them does not.
+fn evenly(
+    slots: &[(usize, Slot, f64)],
+    range: &RangeInclusive<f64>,
+    selection: &Selection,
+) -> Option<Group> {
+    let mut knots: Vec<(f64, Vec<usize>)> = Vec::new();
+    let mut of: Vec<&(usize, Slot, f64)> = slots
+        .iter()
+        .filter(|(_, slot, _)| slot.role == Role::Knot)
+        .collect();
+    of.sort_by(|a, b| a.2.total_cmp(&b.2));
+    for (index, _, value) in of {
+        match knots.last_mut() {
+            Some(last) if last.0 == *value => last.1.push(*index),
+            _ => knots.push((*value, vec![*index])),
+        }
+    }
+    let mut owners: Vec<(Variable, usize)> = Vec::new();
+    owners.extend(slots.iter().map(|(_, slot, _)| (slot.variable, slot.term)));
+    let (first, last) = (knots.first()?.0, knots.last()?.0);
+    let count = knots.len() - 1;
+    let apart = (last - first) / count.max(1) as f64;
+    let is_even = |(i, knot): (usize, &(f64, Vec<usize>))| {
+        (knot.0 - first - apart * i as f64).abs() <= 1e-9 * apart
+    };
+    let moves = count > 0
+        && last <= *range.end()
+        && knots.iter().enumerate().all(is_even)
+        && owners.iter().all(|owner| selection.moves(&[*owner]));
+    moves.then(|| Group {
+        unit: range.end() - range.start(),
+        numbers: knots.split_off(1),
+        rule: Rule::Even(first, first + (range.end() - first) / 4.0..=*range.end()),
+    })
 }
 
 /// Knots and constants of one variable.
@@ -396,6 +472,7 @@ mod tests {
         let selection = Selection {
             only: vec![(Variable::Input(0), None), (Variable::Output(0), Some(1))],
             fix: vec![(Variable::Input(0), Some(0))],
+            even: Vec::new(),
         };
         // The low temperature's foot is the middle one's peak: only the high peak is left, and the half speed.
         let movable = Movable::new(&fan(), &selection);
@@ -413,6 +490,62 @@ mod tests {
             moved.outputs[0].terms[1].conclusion,
             Conclusion::Constant(99.9)
         );
+    }
+
+    #[test]
+    fn what_has_to_stay_even_does() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/designs/fine.fll");
+        let fine = crate::fuzzy::files::load(std::path::Path::new(file), None).unwrap();
+        let d = fine
+            .inputs
+            .iter()
+            .position(|input| input.name == "d")
+            .unwrap();
+        let selection = Selection {
+            only: vec![(Variable::Input(d), None)],
+            even: vec![d],
+            ..Selection::default()
+        };
+        let movable = Movable::new(&fine, &selection);
+        assert_eq!(movable.len(), 1);
+        assert_eq!(movable.decode(&[0.0]), (fine.clone(), 0.0));
+        let peaks = |by: f64| {
+            let (moved, excess) = movable.decode(&[by]);
+            let shapes: Vec<Shape> = moved.inputs[d]
+                .terms
+                .iter()
+                .map(|t| t.shape.clone())
+                .collect();
+            let [
+                Shape::Ramp { to: a, from: b },
+                ..,
+                Shape::Ramp { from: d, to: e },
+            ] = shapes[..]
+            else {
+                panic!("{shapes:?}");
+            };
+            let Shape::Triangle { left, peak, right } = shapes[2] else {
+                panic!("{shapes:?}");
+            };
+            assert_eq!((left, right), (b, d));
+            ([a, b, peak, d, e], excess)
+        };
+        assert_eq!(peaks(-0.25), ([0.0, 0.75, 1.5, 2.25, 3.0], 0.0));
+        // Within what the range holds, and a quarter of it.
+        assert_eq!(peaks(0.5), ([0.0, 1.0, 2.0, 3.0, 4.0], 0.25));
+        assert_eq!(peaks(-1.0).0, [0.0, 0.25, 0.5, 0.75, 1.0]);
+        // In steps that fixed point has, so that it is even there, too.
+        let (uneven, _) = peaks(-0.123_456);
+        assert!(
+            uneven[1] != 1.0 && (uneven[1] * 512.0).fract() == 0.0,
+            "{uneven:?}"
+        );
+        // One of its terms that stays keeps all of them.
+        let fixed = Selection {
+            fix: vec![(Variable::Input(d), Some(1))],
+            ..selection
+        };
+        assert!(Movable::new(&fine, &fixed).is_empty());
     }
 
     /// Knots of an input that its range holds, in the order of their slots; equal ones have equal ranks.

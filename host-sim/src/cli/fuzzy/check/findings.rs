@@ -16,8 +16,9 @@ pub struct Findings {
     pub rules: usize,
     /// How gaps and rules that never fire were looked for.
     pub search: Search,
-    /// Points of the grid.
+    /// Points of the grid, and how many were asked for: costly designs get fewer.
     pub points: usize,
+    pub points_asked: usize,
     pub gaps: Vec<Gap>,
     /// Where an input has no term.
     pub without_terms: Vec<Side>,
@@ -198,6 +199,7 @@ impl Findings {
                 Err(_) => Search::Sampled,
             },
             points: report.points,
+            points_asked: report.points,
             gaps: match &report.coverage {
                 Ok(coverage) => coverage.gaps.iter().map(|gap| named.gap(gap)).collect(),
                 Err(sampled) => named.sampled_gaps(sampled, report.points),

@@ -38,8 +38,9 @@ pub fn fast(design: &Design, arguments: &CheckArguments) -> anyhow::Result<Optio
     }
 }
 
-/// What may be off by more than `most` per cent of its output's range.
-pub fn beyond(findings: &Findings, most: f64) -> Option<String> {
+/// What may be off by more than `most` per cent of its output's range. With [`Route::Fast`] the fast route's bound counts alone:
+/// nothing else is to be made of the design; otherwise it counts among the others.
+pub fn beyond(findings: &Findings, route: Route, most: f64) -> Option<String> {
     if findings.no_fixed_point.is_some() {
         return Some("no fixed point, and --max-error asks how far it is off".to_owned());
     }
@@ -50,6 +51,7 @@ pub fn beyond(findings: &Findings, most: f64) -> Option<String> {
         let classes = SHOWN_STRENGTHS.into_iter().zip(&errors.classes);
         let bounds = classes
             .map(|(name, class)| (name, class.nowhere_above.max(class.greatest)))
+            .filter(|_| route != Route::Fast)
             .chain(errors.fast_route.map(|bound| (FAST, bound)));
         let Some((which, worst)) = bounds.reduce(|a, b| if b.1 > a.1 { b } else { a }) else {
             continue;
@@ -102,6 +104,26 @@ mod tests {
     use host_sim::fuzzy::check::check;
     use host_sim::fuzzy::files::{Format, parse};
     use host_sim::fuzzy::lower::lower;
+
+    #[test]
+    fn a_route_that_is_asked_for_counts_alone() {
+        let text = include_bytes!("../../../../designs/fan.fll");
+        let fan = parse("fan.fll", text, Format::Fll).unwrap();
+        let report = check(&fan, lower(&fan).ok().as_ref(), 1000, &());
+        let mut findings = Findings::new(&fan, &report, "fan".to_owned(), None);
+        // Where rules may be weak the general bound is wide, and the fast route's is not.
+        findings.errors[0].classes[3].nowhere_above = 2.0;
+        findings.errors[0].fast_route = Some(0.5);
+        assert_eq!(beyond(&findings, Route::Fast, 1.0), None);
+        assert!(beyond(&findings, Route::Fast, 0.1).unwrap().contains(FAST));
+        for route in [Route::Auto, Route::General] {
+            assert!(
+                beyond(&findings, route, 1.0)
+                    .unwrap()
+                    .contains("fan 2 % (> 0)")
+            );
+        }
+    }
 
     #[test]
     fn a_broken_bound_is_told_with_its_place() {

@@ -10,6 +10,7 @@ use host_sim::fuzzy::check::{
 use host_sim::fuzzy::describe;
 use host_sim::fuzzy::evaluate::{concluded, rules};
 use host_sim::fuzzy::model::{Place, System};
+use std::ops::RangeInclusive;
 
 /// A system that lends its names.
 pub struct Named<'a>(pub &'a System);
@@ -163,7 +164,10 @@ impl Named<'_> {
         Cells {
             along: along.name.clone(),
             held: held.map(|(input, term)| describe::input_term(self.0, input, term)),
-            conclusions: (turn.cells).map(|(term, value)| (along.terms[term].name.clone(), value)),
+            conclusions: (turn.cells).map(|(term, value)| {
+                let range = &self.0.outputs[turn.output].range;
+                (along.terms[term].name.clone(), settled(value, range))
+            }),
         }
     }
 
@@ -175,7 +179,11 @@ impl Named<'_> {
             turning: ripples.turning,
             at: self.point(&greatest.at),
             at_text: describe::point(self.0, &greatest.at),
-            values: greatest.values,
+            values: greatest.values.map(|(x, y)| {
+                let output = &self.0.outputs[ripples.output].range;
+                let along = &self.0.inputs[ripples.along].range;
+                (settled(x, along), settled(y, output))
+            }),
         }
     }
 
@@ -223,5 +231,13 @@ impl Named<'_> {
                 .collect(),
             fast_route: None,
         }
+    }
+}
+
+/// A value of a range, without what `f64` leaves of a zero.
+fn settled(x: f64, range: &RangeInclusive<f64>) -> f64 {
+    match x.abs() < 1e-9 * (range.end() - range.start()) {
+        true => 0.0,
+        false => x,
     }
 }

@@ -258,8 +258,15 @@ fn errors(findings: &Findings) -> String {
         }
         false => "",
     };
+    let thinner = match findings.points < findings.points_asked / 2 {
+        true => format!(
+            " (each takes long, with so many rules and samples: {} were asked for)",
+            findings.points_asked
+        ),
+        false => String::new(),
+    };
     format!(
-        "fixed point against f64, on a grid of {} points:\n{text}\n\
+        "fixed point against f64, on a grid of {} points{thinner}:\n{text}\n\
          \"nowhere above\" holds between the points too: it is found from the terms' errors and the least weight, box by \
          box.\n{fast}",
         findings.points

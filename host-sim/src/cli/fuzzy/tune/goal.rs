@@ -2,11 +2,11 @@
 
 use super::TuneArguments;
 use crate::cli::{BadInput, Variants, load};
-use host_sim::driving::{Driving, tables};
+use host_sim::driving::{Driving, SCALED, tables};
 use host_sim::fuzzy::lower::Lowered;
 use host_sim::fuzzy::model::System;
 use host_sim::fuzzy::tune::data::Data;
-use host_sim::fuzzy::tune::{Fit, Objective};
+use host_sim::fuzzy::tune::{Fit, Objective, Selection, Variable};
 use host_sim::scenario::Scenario;
 use host_sim::search::Hash;
 use host_sim::search::state::Question;
@@ -46,6 +46,14 @@ impl Goal {
         };
         let (data, hash) = Data::load(file, system, &arguments.ignore)
             .map_err(|error| BadInput(error.to_string()))?;
+        let outside = data.outside(system);
+        if outside > 0 {
+            let file = file.display();
+            eprintln!(
+                "note: {file}: {outside} of {} rows lie outside the inputs' ranges",
+                data.rows.len()
+            );
+        }
         let (train, validation) = data.split(arguments.validate, arguments.seed);
         if train.rows.is_empty() {
             return Err(BadInput(format!(
@@ -62,9 +70,17 @@ impl Goal {
         })
     }
 
-    /// Whether inputs have to stay as they are.
-    pub fn only_outputs(&self) -> bool {
-        matches!(self, Self::Drive { .. })
+    /// What the goal itself holds: the robot's angle has no scale, so φ's terms stay, and d's terms stay evenly divided.
+    pub fn hold(&self, system: &System, selection: &mut Selection) {
+        if matches!(self, Self::Data { .. }) {
+            return;
+        }
+        for (index, input) in system.inputs.iter().enumerate() {
+            match &input.name[..] {
+                SCALED => selection.even.push(index),
+                _ => selection.fix.push((Variable::Input(index), None)),
+            }
+        }
     }
 
     /// Of everything that the cost depends on.

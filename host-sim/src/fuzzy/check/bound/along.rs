@@ -136,7 +136,12 @@ impl<'a> Along<'a> {
                 to,
                 *range.end(),
             ];
-            let (low, high) = (ends.into_iter().chain(knots).map(|x| shape.degree(x)))
+            // At a jump all three count: a spike has its height on neither side, a saw's tooth only before it.
+            let degrees = |x: f64| {
+                let [before, behind] = shape.beside(x);
+                [before, shape.degree(x), behind]
+            };
+            let (low, high) = (ends.into_iter().chain(knots).flat_map(degrees))
                 .fold((1.0_f64, 0.0_f64), |(low, high), d| {
                     (low.min(d), high.max(d))
                 });

@@ -322,8 +322,13 @@ impl Writer<'_> {
         let _ = write!(
             text,
             "        uint64_t moment = 0U;\n        uint64_t weight = 0U;\n        int32_t value;\n        uint32_t at;\n        \
-             for (at = 0U; at < {}U; at++)\n        {{\n            uint32_t merged = 0U;\n",
-            samples.count()
+             for (at = 0U; at < {}U; at++)\n        {{\n            {} merged = 0U;\n",
+            samples.count(),
+            match merge {
+                // Of hundreds of rules it has more than 32 bits.
+                Merge::Sum => "uint64_t",
+                Merge::Max => "uint32_t",
+            }
         );
         for (t, name) in self.names.all.outputs[o].terms.iter().enumerate() {
             for (rule, implication) in self.about(o, t) {

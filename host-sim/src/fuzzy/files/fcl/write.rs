@@ -218,6 +218,18 @@ fn points(all: &[(f64, f64)]) -> String {
 fn shape(shape: &Shape, place: Place) -> Result<String, WriteError> {
     let named = |name: &str, all: &[f64]| Ok(format!("{name} {}", numbers(all)));
     match *shape {
+        // Of points at one value the last counts; of these two the peak does.
+        Shape::Triangle { left, peak, right } if peak == right => {
+            named("TRIAN", &[left, peak, right])
+        }
+        Shape::Trapezoid {
+            left,
+            rise,
+            fall,
+            right,
+        } if fall == right && left.is_finite() && right.is_finite() => {
+            named("TRAPE", &[left, rise, fall, right])
+        }
         Shape::Triangle { left, peak, right } => {
             Ok(points(&[(left, 0.0), (peak, 1.0), (right, 0.0)]))
         }
