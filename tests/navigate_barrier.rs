@@ -1,5 +1,5 @@
 //! The last barrier's promise under the assumptions that its documentation states: whatever is wanted, no known point is
-//! touched. It is kept in all of the fields below, and not yet in every field: see there.
+//! touched.
 
 use fixed::types::{I8F24, I16F16};
 use fuzzypilot::geometry::Point;
@@ -114,7 +114,8 @@ fn guarded(robot: &Robot, before: [f64; 2], points: &[[f64; 2]], wanted: [f64; 2
     gate(&params, &near, &outline, brakes(), driven, stepped)
 }
 
-/// Fields of the test below. Of the first 60,000 that the generator makes 13 are touched; the first is number 7,723.
+/// Fields of the test below; `FUZZYPILOT_FIELDS=60000 cargo test --release --test navigate_barrier` tries more of them in a minute
+/// and a half. A gate that takes the latest contact instead of braking where nothing passes touches number 7,723 first.
 const FIELDS: usize = 2000;
 
 /// A reckless driver among random points, the same fields every time.
@@ -125,7 +126,8 @@ fn whatever_is_wanted_no_known_point_is_touched() {
         prop::collection::vec((-0.3..2.0f64, -3.0..3.0f64), 1..12),
     );
     let mut runner = TestRunner::deterministic();
-    let touched: Vec<usize> = (0..FIELDS)
+    let fields_tried = std::env::var("FUZZYPILOT_FIELDS").map_or(FIELDS, |n| n.parse().unwrap());
+    let touched: Vec<usize> = (0..fields_tried)
         .filter(|_| {
             let field = fields.new_tree(&mut runner).unwrap().current();
             touches(&field.0, &field.1)
