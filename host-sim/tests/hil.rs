@@ -790,6 +790,34 @@ mod port {
         })
     }
 
+    /// A robot whose records are all zeros, in sound frames, once it has heard so many bytes.
+    fn garbler(most: usize) -> Robot {
+        let (mut robot, mut heard) = (pilot(), 0);
+        Box::new(move |bytes| {
+            heard += bytes.len();
+            let answers = robot(bytes)?;
+            if heard < most {
+                return Some(answers);
+            }
+            let (mut decoder, mut garbled) = (Decoder::new(), Vec::new());
+            for byte in answers {
+                let Some(Ok(frame)) = decoder.push(byte) else {
+                    continue;
+                };
+                let message = match frame.parse::<ToHost<'_>>() {
+                    Some(ToHost::RecordPart { part, .. }) => ToHost::RecordPart {
+                        part,
+                        bytes: &[0; 52],
+                    },
+                    other => other?,
+                };
+                let mut wire = [0; MAX_FRAME];
+                garbled.extend_from_slice(encode(frame.sequence, &message, &mut wire)?);
+            }
+            Some(garbled)
+        })
+    }
+
     /// A robot that says the same over and over, whatever it is asked.
     fn chatter() -> Robot {
         let mut wire = [0; MAX_FRAME];
@@ -870,6 +898,10 @@ mod port {
                 &["no answer for 1200 ms at"],
             ),
             (until(SOME, pilot()), &["has restarted at", "switched on"]),
+            (
+                garbler(SOME),
+                &["answered tick", "by something else: the record of tick 0"],
+            ),
         ];
         for (robot, parts) in cases {
             let dir = tempdir().unwrap();
@@ -880,6 +912,7 @@ mod port {
             for part in parts {
                 assert!(said.contains(part), "{part}: {said}");
             }
+            assert!(said.len() <= 200, "{said}");
             // Set-up and drawing included.
             assert!(took < IN_TIME, "{parts:?}: {took:?}");
             assert_eq!(names(&dir.path().join("hil")), RESULTS);
