@@ -266,8 +266,13 @@ fn stood(report: &HostileReport) -> String {
         (
             "sent",
             format!(
-                "{} random, {} truncated, {} with bits flipped, {} played back, in {:.1} s",
-                report.random, report.truncated, report.flipped, report.replayed, report.seconds
+                "{} random, {} truncated, {} with bits flipped, {} played back, in {:.1} s; {} of them to a monitor",
+                report.random,
+                report.truncated,
+                report.flipped,
+                report.replayed,
+                report.seconds,
+                report.in_monitor
             ),
         ),
         (

@@ -10,7 +10,7 @@ use crate::run::{OwnedPath, RunError, drive};
 use crate::scenario::Scenario;
 use crate::si;
 use fuzzypilot::geometry::Pose;
-use fuzzypilot::link::frame::Decoder;
+use fuzzypilot::link::frame::{self, Decoder, MAX_FRAME};
 use fuzzypilot::link::message::{Cause, Role, ToTarget};
 use fuzzypilot::params::Params;
 use rand::{RngExt, SeedableRng};
@@ -56,6 +56,8 @@ pub struct HostileReport {
     pub flipped: u64,
     /// Honest frames played back.
     pub replayed: u64,
+    /// Of all these, those that met a robot in the role of a monitor, which drives by itself once it is armed.
+    pub in_monitor: u64,
     /// Times that the robot was looked at, set up anew, armed, driven for a tick and stopped.
     pub checks: u32,
     /// Most good frames until it was heard again.
@@ -75,6 +77,8 @@ pub struct HostileReport {
 struct Attack {
     line: Line,
     tape: Vec<Vec<u8>>,
+    /// The robot's role, in which it is now.
+    role: Role,
     dice: Pcg64Mcg,
     params: Params<SENSORS>,
     path: OwnedPath,
@@ -119,6 +123,7 @@ pub fn attack(
         },
         line,
         tape,
+        role: Role::Lockstep,
         dice: Pcg64Mcg::seed_from_u64(seed ^ 0x686f_7374_696c_6500),
         params,
         path,
@@ -162,6 +167,23 @@ fn thinned(tape: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     tape
 }
 
+/// The same frame of a session as a monitor.
+fn as_monitor(honest: Vec<u8>) -> Vec<u8> {
+    let mut decoder = Decoder::new();
+    for byte in &honest {
+        if let Some(Ok(frame)) = decoder.push(*byte)
+            && let Some(ToTarget::Hello { nonce, .. }) = frame.parse()
+        {
+            let role = Role::Monitor;
+            let mut wire = [0; MAX_FRAME];
+            let hello = ToTarget::Hello { nonce, role };
+            let hello = frame::encode(frame.sequence, &hello, &mut wire);
+            return hello.unwrap_or_default().to_vec();
+        }
+    }
+    honest
+}
+
 impl Attack {
     fn below(&mut self, most: usize) -> usize {
         self.dice.random_range(0..most.max(1))
@@ -179,6 +201,10 @@ impl Attack {
     fn strike(&mut self) -> Result<(), Outage> {
         let at = self.below(self.tape.len());
         let mut frame = self.tape.get(at).cloned().unwrap_or_default();
+        if self.role == Role::Monitor {
+            frame = as_monitor(frame);
+            self.report.in_monitor += 1;
+        }
         match self.below(4) {
             0 => {
                 let count = self.below(100);
@@ -235,6 +261,7 @@ impl Attack {
             // No retries, and nothing that would end a broken frame but a frame.
             let nonce = self.dice.random();
             let role = Role::Lockstep;
+            self.role = role;
             asked.push(self.line.send(&ToTarget::Hello { nonce, role })?);
             let last = asked.len() >= MOST_GOOD as usize;
             let patience = if last { LAST_ANSWER } else { NEXT_GOOD };
@@ -274,8 +301,23 @@ impl Attack {
             Answer::State(state) if !state.armed && state.cause == Cause::StopCommand => {}
             other => return Err(self.failed(format!("it was not stopped: {other:?}"))),
         }
+        if (self.sent / BATCH) % 2 == 1 {
+            self.monitor()?;
+        }
         self.report.checks += 1;
         Ok(())
+    }
+
+    /// Leaves it in the other role, in which its own wheels would turn: placed on its own path, and so one message from driving.
+    /// It is not armed here: nobody knows where it stands.
+    fn monitor(&mut self) -> Result<(), Outage> {
+        target::hello(&mut self.line, Role::Monitor)?;
+        self.role = Role::Monitor;
+        let (x, y, heading) = (0, 0, 0);
+        match self.line.ask(&ToTarget::Begin { x, y, heading })? {
+            Answer::Ack => Ok(()),
+            other => Err(self.failed(format!("its own path was not begun: {other:?}"))),
+        }
     }
 
     /// Waits until it has answered what it has read so far.

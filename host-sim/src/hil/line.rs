@@ -194,7 +194,7 @@ impl Line {
         self.wire.now()
     }
 
-    /// Begins to count silence anew.
+    /// Begins to count silence anew: it has answered. What nobody has asked for is no answer.
     pub fn listen(&mut self) {
         self.heard = self.wire.now();
     }
@@ -252,7 +252,6 @@ impl Line {
                     Ok(frame) => {
                         let answer = frame.parse::<ToHost<'_>>();
                         let answer = answer.map_or(Answer::Unknown, Answer::from);
-                        self.heard = self.wire.now();
                         return Ok(Some((frame.sequence, answer)));
                     }
                     Err(FrameError::Version { found, .. }) => {
@@ -302,6 +301,7 @@ impl Line {
         loop {
             match self.next(again.min(end))? {
                 Some((answered, answer)) if answered == sequence => {
+                    self.listen();
                     self.traffic.round_trips += 1;
                     return Ok(Some(answer));
                 }

@@ -2,8 +2,10 @@
 
 use super::wire::Wire;
 use fuzzypilot::geometry::Pose;
+use fuzzypilot::guide::{Path, Segment};
 use fuzzypilot::pilot::Pilot;
 use fuzzypilot::presets;
+use fuzzypilot::units::Metres;
 use std::collections::VecDeque;
 use std::io;
 use std::time::Duration;
@@ -38,6 +40,18 @@ impl Local {
         }
     }
 
+    /// What the firmware does after a plant: its own settings again, and a metre straight on.
+    fn restore(&mut self) {
+        if self.pilot.is_orphaned() {
+            let own = |params: &mut _| *params = presets::small_robot();
+            self.pilot.restore(Pose::default(), own);
+            let metre = [Segment::line(Pose::default(), Metres::lit("1"))];
+            let path = Path::segments(&metre, false).ok();
+            // There is room for it.
+            let _ = path.map(|path| self.pilot.set_path(&path));
+        }
+    }
+
     /// The robot.
     pub fn pilot(&self) -> &LocalPilot {
         &self.pilot
@@ -49,6 +63,7 @@ impl Wire for Local {
         for byte in frame {
             self.now += BYTE;
             let now_us = self.now.as_micros() as u32;
+            self.restore();
             self.pilot.receive(*byte, now_us, &mut |frame: &[u8]| {
                 self.answers.extend(frame);
             });

@@ -16,6 +16,9 @@ pub const QEMU: &str = "qemu-system-arm";
 /// Longest time until the emulator has opened its socket.
 const START: Duration = Duration::from_millis(1800);
 
+/// Longest time in which the log is read when it has ended.
+const LAST_WORDS: Duration = Duration::from_millis(100);
+
 /// Most of the log that is kept, bytes.
 const MAX_LOG: usize = 16 << 20;
 
@@ -48,12 +51,9 @@ struct Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // Either fails only if it has ended by itself.
-        let _ = self.child.kill();
+        self.kill();
         let _ = self.child.wait();
-        for reader in self.readers.drain(..) {
-            let _ = reader.join();
-        }
+        self.hear_out();
         let _ = std::fs::remove_file(&self.socket);
     }
 }
@@ -144,6 +144,22 @@ impl Qemu {
 }
 
 impl Emulator {
+    /// Kills it with all that it has started: what is called like the emulator may be a script around it.
+    fn kill(&self) {
+        // Its group is named after it; that there is none any more is no error.
+        let group = rustix::process::Pid::from_child(&self.child);
+        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+    }
+
+    /// Waits until all that it has said is read; not for long: somebody else may hold its end of a pipe.
+    fn hear_out(&mut self) {
+        let end = Instant::now() + LAST_WORDS;
+        while Instant::now() < end && !self.readers.iter().all(JoinHandle::is_finished) {
+            thread::sleep(Duration::from_millis(1));
+        }
+        self.readers.clear();
+    }
+
     /// How it ended, if it has or does soon, with the last line that it said.
     fn last_words(&mut self, patience: Duration) -> Option<String> {
         let end = Instant::now() + patience;
@@ -154,9 +170,8 @@ impl Emulator {
                 _ => return None,
             }
         };
-        for reader in self.readers.drain(..) {
-            let _ = reader.join();
-        }
+        self.kill();
+        self.hear_out();
         let log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         let text = String::from_utf8_lossy(&log);
         let last = text.lines().rev().find(|line| !line.trim().is_empty());

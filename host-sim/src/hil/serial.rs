@@ -21,5 +21,13 @@ impl Patient for Box<dyn SerialPort> {
 /// There is no such port, it may not be opened, or it is in use.
 pub fn open(port: &str, baud: u32) -> io::Result<Stream<Box<dyn SerialPort>>> {
     let builder: SerialPortBuilder = serialport::new(port, baud);
-    Ok(Stream::new(builder.open()?, port.to_owned()))
+    let open = builder.open().map_err(|error| {
+        let error = io::Error::from(error);
+        // What the system calls a file or device of another kind.
+        match error.to_string().contains("typewriter") {
+            true => io::Error::new(error.kind(), "it is no serial port"),
+            false => error,
+        }
+    })?;
+    Ok(Stream::new(open, port.to_owned()))
 }

@@ -106,9 +106,18 @@ fn confused(wire: String, what: &str, answer: &Answer) -> Outage {
             found: match other {
                 // One's own question, for example.
                 Answer::Unknown => "a frame that is no answer".to_owned(),
-                other => format!("{other:?}"),
+                other => cut(&format!("{other:?}")),
             },
         },
+    }
+}
+
+/// What of a long text fits a line.
+fn cut(text: &str) -> String {
+    const MOST: usize = 80;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{} …", &text[..end]),
+        None => text.to_owned(),
     }
 }
 
@@ -526,6 +535,9 @@ impl Target {
                 until = end.min(self.line.now() + 2 * PROMPT);
                 continue;
             };
+            if answered == sequence || probe == Some(answered) {
+                self.line.listen();
+            }
             match answer {
                 Answer::Part(part, bytes) if answered == sequence && bytes.len() == PART_BYTES => {
                     if let Some(place) = parts.get_mut(usize::from(part)) {
@@ -566,12 +578,18 @@ impl Target {
     /// A record has come.
     fn take(&mut self, bytes: [u8; RECORD_BYTES], time: f64) -> Result<Reply, Outage> {
         self.line.traffic.round_trips += 1;
-        let record = record::decode(&bytes).filter(|record| record.tick == self.next_tick);
-        let Some(record) = record else {
+        let record = record::decode(&bytes);
+        let Some(record) = record
+            .clone()
+            .filter(|record| record.tick == self.next_tick)
+        else {
             return Err(Outage::Confused {
                 wire: self.line.name(),
                 what: format!("tick {} at {time:.2} s", self.next_tick),
-                found: format!("{bytes:02x?}"),
+                found: match record {
+                    Some(record) => format!("the record of tick {}", record.tick),
+                    None => "bytes that are no record".to_owned(),
+                },
             });
         };
         self.next_tick = self.next_tick.wrapping_add(1);
