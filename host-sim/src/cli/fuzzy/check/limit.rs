@@ -120,7 +120,7 @@ mod tests {
             assert!(
                 beyond(&findings, route, 1.0)
                     .unwrap()
-                    .contains("fan 2 % (> 0)")
+                    .contains("fan 2.0 % (> 0)")
             );
         }
     }
