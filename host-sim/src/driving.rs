@@ -247,7 +247,7 @@ mod tests {
             let mut seen = Vec::new();
             let scenario = load("line-offset").unwrap();
             simulate_with(&scenario, 1, fine, &mut |step| {
-                seen.push(step.record.clone())
+                seen.push(step.record.clone());
             })
             .unwrap();
             seen

@@ -303,11 +303,11 @@ fn thousands_of_rules_have_a_fixed_point() {
         model.outputs[0].terms[1].conclusion = Conclusion::Constant(8192.0);
     });
     let crossing = crowd(1023, |model| {
-        sets(model, ramp(100.0, 0.0), ramp(0.0, 100.0))
+        sets(model, ramp(100.0, 0.0), ramp(0.0, 100.0));
     });
     // 4,096 rules, but at no sample more than half of them.
     let apart = crowd(2047, |model| {
-        sets(model, ramp(50.0, 0.0), ramp(50.0, 100.0))
+        sets(model, ramp(50.0, 0.0), ramp(50.0, 100.0));
     });
     for model in [numbers, crossing, apart] {
         let (lowered, exact) = (lower(&model).unwrap(), Exact::new(&model));
