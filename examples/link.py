@@ -221,11 +221,17 @@ def open_port(port, baud):
     import termios
     import tty
 
+    rate = getattr(termios, f"B{baud}", None)
+    if rate is None:
+        raise SystemExit(f"--baud: {baud} is no rate of a serial port")
     fd = os.open(port, os.O_RDWR | os.O_NOCTTY)
-    tty.setraw(fd)
-    attributes = termios.tcgetattr(fd)
-    attributes[4] = attributes[5] = getattr(termios, f"B{baud}")
-    termios.tcsetattr(fd, termios.TCSANOW, attributes)
+    try:
+        tty.setraw(fd)
+        attributes = termios.tcgetattr(fd)
+        attributes[4] = attributes[5] = rate
+        termios.tcsetattr(fd, termios.TCSANOW, attributes)
+    except termios.error:
+        raise SystemExit(f"{port}: no serial port") from None
     return fd
 
 
@@ -305,32 +311,39 @@ def raw(text):
     return int(text)
 
 
-def send_path(link, text):
+def path_pieces(text):
+    """A path's pieces as messages, and that it begins."""
     pieces = [piece.split() for piece in text.split(";") if piece.strip()]
-    begin = {"form": {"Segments": {}}, "count": len(pieces), "closed": False, "gaps": False}
-    link.within({"PathBegin": begin})
+    messages = [{"PathBegin": {"form": {"Segments": {}}, "count": len(pieces), "closed": False, "gaps": False}}]
     for index, (kind, *n) in enumerate(pieces):
         if (kind, len(n)) not in (("line", 4), ("arc", 5)):
-            raise SystemExit(f"path: {kind} with {len(n)} numbers; line has 4, arc 5")
+            raise ValueError(f"{kind} with {len(n)} numbers; line has 4, arc 5")
         place = {"index": index, "x": q16(n[0]), "y": q16(n[1])}
         if kind == "line":
-            link.ask({"PathLine": {**place, "heading": turns(n[2]), "length": q16(n[3])}})
+            messages.append({"PathLine": {**place, "heading": turns(n[2]), "length": q16(n[3])}})
         else:
-            link.ask({"PathArc": {**place, "radius": q16(n[2]), "from": turns(n[3]), "sweep": turns(n[4], 24)}})
+            messages.append({"PathArc": {**place, "radius": q16(n[2]), "from": turns(n[3]), "sweep": turns(n[4], 24)}})
+    return messages
+
+
+def send_path(link, messages):
+    link.within(messages[0])
+    for message in messages[1:]:
+        link.ask(message)
     return link.ask({"PathEnd": {}})
 
 
-# Commands, how many values each takes, and what it then does.
+# Commands, how each of their values is read, and what they then do.
 COMMANDS = {
-    "hello": (0, lambda link: link.hello()),
-    "status": (0, lambda link: link.ask({"Status": {}})),
-    "stop": (0, lambda link: link.ask({"Stop": {}})),
-    "get": (1, lambda link, number: link.within({"Get": {"id": int(number)}})),
-    "set": (2, lambda link, number, value: link.within({"Set": {"id": int(number), "value": raw(value)}})),
-    "path": (1, send_path),
-    "begin": (3, lambda link, x, y, degrees: link.within({"Begin": {"x": q16(x), "y": q16(y), "heading": turns(degrees)}})),
-    "arm": (0, lambda link: link.arm()),
-    "record": (0, lambda link: unpack_record(link.within({"Record": {}}, parts=3))),
+    "hello": ((), lambda link: link.hello()),
+    "status": ((), lambda link: link.ask({"Status": {}})),
+    "stop": ((), lambda link: link.ask({"Stop": {}})),
+    "get": ((int,), lambda link, number: link.within({"Get": {"id": number}})),
+    "set": ((int, raw), lambda link, number, value: link.within({"Set": {"id": number, "value": value}})),
+    "path": ((path_pieces,), send_path),
+    "begin": ((q16, q16, turns), lambda link, x, y, heading: link.within({"Begin": {"x": x, "y": y, "heading": heading}})),
+    "arm": ((), lambda link: link.arm()),
+    "record": ((), lambda link: unpack_record(link.within({"Record": {}}, parts=3))),
 }
 
 
@@ -341,11 +354,14 @@ def commands(words):
         name = words.pop(0)
         if name not in COMMANDS:
             raise SystemExit(f"{name}: no such command; see --help")
-        count = COMMANDS[name][0]
-        if len(words) < count:
-            raise SystemExit(f"{name}: {count} values expected, {len(words)} found")
-        found.append((name, words[:count]))
-        del words[:count]
+        readers = COMMANDS[name][0]
+        if len(words) < len(readers):
+            raise SystemExit(f"{name}: {len(readers)} values expected, {len(words)} found")
+        try:
+            found.append((name, [read(word) for read, word in zip(readers, words)]))
+        except (ValueError, OverflowError) as error:
+            raise SystemExit(f"{name}: {error}") from None
+        del words[:len(readers)]
     return found
 
 

@@ -277,6 +277,24 @@ fn motors_that_stopped_go_on_after_arming_only() {
     }
 }
 
+/// Armed and then silent, the motors have not moved yet: it may not set off late.
+#[test]
+fn silence_right_after_arming_disarms_too() {
+    let scenario = load("one-obstacle").unwrap();
+    for fault in ["silence@0+8", "to-silence@0+12", "from-silence@0+8"] {
+        let seen = drive(&scenario, 1, &[fault], None);
+        assert_eq!(seen.driven.ending, Ending::Disarmed, "{fault}");
+        assert!(seen.times.is_empty(), "{fault}: {:?}", seen.times);
+        let seen = drive(&scenario, 1, &[fault], Some(2));
+        assert_eq!(seen.driven.ending, Ending::PathEnd, "{fault}");
+        let events = &seen.driven.report.events;
+        assert!(
+            events.iter().any(|event| event.what == "armed again"),
+            "{fault}: {events:?}"
+        );
+    }
+}
+
 #[test]
 fn a_few_lost_ticks_are_driven_through() {
     let scenario = load("one-obstacle").unwrap();

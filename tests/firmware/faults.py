@@ -116,12 +116,16 @@ class Board:
     def __init__(self, image, folder):
         self.debugger = f"{folder}/debugger.sock"
         self.emulator = Emulator(image, folder, "-gdb", f"unix:{self.debugger},server=on,wait=off")
-        self.wire = self.emulator.connect()
-        self.wire.hello()
-        self.wire.ask({"Begin": {"x": 0, "y": 0, "heading": 0}})
-        self.wire.ask({"Arm": {"token": self.wire.token}})
-        time.sleep(0.3)
-        expect(state(self.wire)[0]["armed"], "it does not drive")
+        try:
+            self.wire = self.emulator.connect()
+            self.wire.hello()
+            self.wire.ask({"Begin": {"x": 0, "y": 0, "heading": 0}})
+            self.wire.ask({"Arm": {"token": self.wire.token}})
+            time.sleep(0.3)
+            expect(state(self.wire)[0]["armed"], "it does not drive")
+        except BaseException:
+            self.__exit__()
+            raise
 
     def __enter__(self):
         return self

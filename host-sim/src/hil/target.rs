@@ -3,7 +3,9 @@
 use super::line::{Answer, Line, State, Welcome};
 use super::report::LinkReport;
 use super::{LONGEST_SILENCE, Outage};
+use crate::plant::command_timeout;
 use crate::run::{Controller, OwnedPath, Reply, SimPorts};
+use crate::si;
 use fuzzypilot::geometry::Pose;
 use fuzzypilot::guide::Segment;
 use fuzzypilot::link::message::{
@@ -46,6 +48,9 @@ pub struct Target {
     uptime_ms: u32,
     /// The plant's last time-out after which the robot was disarmed.
     timed_out: Option<(f64, f64)>,
+    /// When it was last armed or heard, s, and how long it may be silent while it is armed.
+    heard: Option<f64>,
+    silence: f64,
     /// Since when and why it is disarmed.
     disarmed: Option<(f64, Cause)>,
     /// Good answers in a row.
@@ -314,6 +319,8 @@ impl Target {
             token: state.token,
             uptime_ms: state.uptime_ms,
             timed_out: None,
+            heard: None,
+            silence: command_timeout(si::from_seconds(params.period)),
             disarmed: None,
             good: 0,
             lost: 0,
@@ -479,6 +486,7 @@ impl Target {
         }
         if was.is_some() && self.disarmed.is_none() {
             self.report.event(time, "armed again");
+            self.heard = Some(time);
         }
         Ok(())
     }
@@ -674,8 +682,16 @@ impl<const N: usize> Controller<N> for Target {
         let counts = Counts::from(ports.encoders.counts());
         let mut readings = vec![RangeReading::NEVER_SEEN; ports.ranges.mounted()];
         ports.ranges.read(&mut readings);
+        self.heard.get_or_insert(time);
         let reply = self.exchange(time, counts, &readings)?;
-        let late = self.timed_out != ports.drive.timed_out;
+        // Motors that stood stop nowhere, but what was armed may not set off late either.
+        let silent = self
+            .heard
+            .is_some_and(|heard| time - heard > self.silence + 1e-9);
+        let late = silent || self.timed_out != ports.drive.timed_out;
+        if !matches!(reply, Reply::Lost) {
+            self.heard = Some(time);
+        }
         match reply {
             Reply::Lost => return Ok(reply),
             Reply::Tick(_) if late => {
