@@ -34,7 +34,7 @@
 //! | chosen by the type | [`TwinTable`] | [`Antecedents`] and [`RuleTable`] | [`system::System`] |
 //!
 //! With physical units in and out, two outputs of 5 × 5 rules cost a [`MirroredTwin`], which is a [`TwinTable`] and its scales,
-//! at most 45 instructions on a Cortex-M4F, 160 on a Cortex-M0 and 101 on a RISC-V rv32imc, the same for every input, and
+//! at most 45 instructions on a Cortex-M4F, 160 on a Cortex-M0 and 105 on a RISC-V rv32imc, the same for every input, and
 //! at most 512 bytes of flash: `cargo engine` counts them, and fails where it is more.
 //!
 //! All three do the same work for every input, give the same bits on every machine, cannot panic and are checked while they

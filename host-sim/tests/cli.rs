@@ -1047,8 +1047,13 @@ fn no_command_writes_over_what_it_reads() {
         );
         let json = ["run", &scenario, "--out", "p", "--json", &scenario];
         refused(here, &json, 2, &["--json: ", &lost]);
+        let hil = ["hil", "--local", "--scenario", &scenario, "--out", "o"];
+        refused(here, &hil, 2, &["--out: ", &lost]);
         fs::remove_file(here.join(&scenario)).unwrap();
     }
+    fs::write(here.join("o/link.json"), GOOD).unwrap();
+    let hil = ["hil", "--local", "--scenario", "o/link.json", "--out", "o"];
+    refused(here, &hil, 2, &["--out: ", "o/link.json is the scenario"]);
     for file in [
         "decisions.svg",
         "decisions.png",

@@ -1,7 +1,7 @@
 //! `host-sim hil`
 
-use super::run::{Watch, json, report};
-use super::{BadInput, Variants, check_folder, load, print, put, whole};
+use super::run::{self, Watch, json, report};
+use super::{BadInput, Variants, check_folder, load, none_of_what_is_read, print, put, whole};
 use anyhow::Context;
 use clap::{ArgGroup, Args};
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
@@ -70,6 +70,9 @@ pub struct HilArguments {
     hostile: Option<u64>,
 }
 
+/// What is written beside a run's own files.
+const FILES: [&str; 3] = ["link.json", "hostile.json", "target.log"];
+
 pub fn execute(arguments: &HilArguments) -> anyhow::Result<()> {
     let scenario = load(&arguments.scenario, &arguments.variants)?;
     let folder = match &arguments.out {
@@ -77,6 +80,9 @@ pub fn execute(arguments: &HilArguments) -> anyhow::Result<()> {
         None => Path::new("out").join(format!("hil-{}", scenario.name)),
     };
     check_folder(&folder)?;
+    let read = [("the scenario", Path::new(&arguments.scenario))];
+    none_of_what_is_read("--out", &folder, &run::FILES, &read)?;
+    none_of_what_is_read("--out", &folder, &FILES, &read)?;
     // Waits look at it, and whatever was started is ended in good order.
     ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed))
         .context("signals: cannot be handled")?;

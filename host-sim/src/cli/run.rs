@@ -153,7 +153,7 @@ pub fn json(summary: &impl Serialize) -> anyhow::Result<Vec<u8>> {
 }
 
 /// What [`write`] makes.
-const FILES: [&str; 5] = [
+pub const FILES: [&str; 5] = [
     "run.svg",
     "run.png",
     "replay.html",

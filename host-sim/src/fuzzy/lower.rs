@@ -107,16 +107,29 @@ fn may_be_coarser(tables: &Tables, model: &System, output: usize) -> bool {
 fn too_many_rules(model: &System, output: usize) -> LowerError {
     let concludes = |rule: &&ModelRule| rule.conclusions.iter().any(|c| c.0 == output);
     let rules = model.blocks.iter().flat_map(|block| &block.rules);
+    let count = rules.filter(concludes).count();
     let output = &model.outputs[output];
+    let name = &output.name;
+    let (what, limit) = if matches!(
+        output.defuzzifier,
+        super::model::Defuzzifier::WeightedAverage
+    ) {
+        (
+            format!(
+                "the conclusions of the output `{name}`'s {count} rules are too large for its range"
+            ),
+            "fewer rules, or conclusions nearer to the range, are possible",
+        )
+    } else {
+        (
+            format!("the output `{name}` is concluded by {count} rules whose sets are added"),
+            "2047 are possible at one place, those of overlapping sets together, or any number where the largest counts",
+        )
+    };
     LowerError::TooMany {
         place: output.place,
-        what: format!(
-            "the output `{}` is concluded by {} rules whose sets are added",
-            output.name,
-            rules.filter(concludes).count()
-        ),
-        limit: "2047 are possible at one place, those of overlapping sets together, or any number where the largest counts"
-            .into(),
+        what,
+        limit: limit.into(),
     }
 }
 
