@@ -418,7 +418,7 @@ fn an_open_field_makes_no_cone_dead() {
 fn a_dead_cone_is_not_taken_for_free() {
     let mut ranges = [2.0; 16];
     ranges[8] = 0.0;
-    ranges[9] = 0.5;
+    ranges[9] = 0.4;
     let in_cone = |ranges: [f64; 16]| {
         let (navigator, _) = hearing(ranges, 60);
         // Cone 8 looks from straight ahead to 16.9° left.

@@ -93,7 +93,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             unproven: 72,
             ahead: const { Angle::deg("30") },
             speed: const { MetresPerSecond::lit("0.5") },
-            lend: m!("0.7"),
+            lend: m!("0.5"),
         },
         doubt: DoubtParams {
             careful: const { MetresPerSecond::lit("1") },
@@ -162,7 +162,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             patience: 81,
             pause: 20,
             strikes: 8,
-            give_up: 1000,
+            give_up: 850,
             arrival: m!("0.12"),
         },
         barrier: BarrierParams {
