@@ -631,6 +631,6 @@ fn thousands_of_rules_get_fewer_points_and_it_is_said() {
     let thinner =
         "points (of 100000 that were asked for; each takes long, with so many rules and samples):";
     assert!(printed.contains(thinner), "{printed}");
-    // About ten seconds on two idle cores as the program is shipped; nothing waits for minutes.
+    // Some seconds on two idle cores; nothing waits for minutes.
     assert!(begin.elapsed().as_secs() < 100, "{:?}", begin.elapsed());
 }
