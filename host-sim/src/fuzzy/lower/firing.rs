@@ -16,6 +16,12 @@ pub struct Firing<'a> {
     degrees: System<'a>,
 }
 
+/// A rule that fires, by its place in its block, and of what it concludes that which counts.
+struct Kept {
+    place: usize,
+    then: Vec<(u8, u8)>,
+}
+
 impl Fixed<'_> {
     /// Opens it for many evaluations at which few of many rules fire.
     pub fn firing<R>(&self, use_it: impl FnOnce(&dyn Evaluator) -> R) -> R {
@@ -68,29 +74,28 @@ impl Firing<'_> {
             let key = (output, term, implication == Norm::Min);
             strongest.get(&key).is_none_or(|&(_, first)| first == rule)
         };
-        // Each rule that fires, with what it concludes that counts.
-        let mut then: Vec<Vec<(usize, Vec<(u8, u8)>)>> = Vec::new();
+        let mut of_blocks: Vec<Vec<Kept>> = Vec::new();
         let mut index = 0;
         for block in all.blocks() {
             let mut kept = Vec::new();
             for (place, rule) in block.rules.iter().enumerate() {
                 if degrees[index].bits() > 0 {
                     let conclusions = rule.then.iter().copied();
-                    let conclusions: Vec<(u8, u8)> = conclusions
+                    let then: Vec<(u8, u8)> = conclusions
                         .filter(|&conclusion| counts(index, block.implication, conclusion))
                         .collect();
-                    if !conclusions.is_empty() {
-                        kept.push((place, conclusions));
+                    if !then.is_empty() {
+                        kept.push(Kept { place, then });
                     }
                 }
                 index += 1;
             }
-            then.push(kept);
+            of_blocks.push(kept);
         }
-        let rules: Vec<Vec<Rule<'_>>> = (all.blocks().iter().zip(&then))
+        let rules: Vec<Vec<Rule<'_>>> = (all.blocks().iter().zip(&of_blocks))
             .map(|(block, kept)| {
                 let kept = kept.iter();
-                kept.map(|(place, then)| Rule {
+                kept.map(|Kept { place, then }| Rule {
                     then,
                     ..block.rules[*place]
                 })
