@@ -487,9 +487,22 @@ fn bad_wishes_are_refused() {
         ),
         (
             "--fix fan.none",
-            &["--fix fan.none", "no such variable or term"],
+            &[
+                "--fix fan.none: `fan` has no term `none`; allowed are fan.",
+                ", fan.mid, ",
+            ],
         ),
-        ("--only humidity", &["no number can move"]),
+        (
+            "--only humidity",
+            &[
+                "--only humidity: no number can move",
+                "; what can is temperature",
+            ],
+        ),
+        (
+            "--only fan.mid --fix fan",
+            &["--only fan.mid and --fix fan: no number can move"],
+        ),
         ("--validate 0.9999", &["allowed is a number from 0 to 0.9"]),
         ("--sigma nan", &["allowed is a number from"]),
         ("--evaluations 0", &["allowed is a whole number"]),
@@ -531,7 +544,7 @@ fn bad_wishes_are_refused() {
         ),
         (
             format!("{} --scenario line --only phi", fine.display()),
-            &["no number can move"],
+            &["--only phi: no number can move", "what can is d, "],
         ),
     ] {
         refused(here, tune(here, &args), parts);

@@ -38,6 +38,12 @@ fn settings_that_do_not_exist_are_named() {
         .assert()
         .code(2)
         .stderr(contains("--only steer.raet").and(contains("steer.rate")));
+    tune(&["--only", "steer.rate", "--fix", "steer"])
+        .assert()
+        .code(2)
+        .stderr(contains(
+            "--fix steer: no setting is left to move; without it steer.rate",
+        ));
     tune(&["--list", "--only", "steer"])
         .assert()
         .success()

@@ -28,8 +28,12 @@ pub fn none_of_what_is_read(
     files.try_for_each(|file| not_what_is_read(option, &file, read))
 }
 
-/// The files that worlds are read from: the one that is named and what is read beside it, or all of a folder.
+/// The files that worlds are read from: the one that is named and, of JSON lines, what is read beside it, or all of a
+/// folder; none where they are generated.
 pub fn of_worlds(place: &str) -> Vec<PathBuf> {
+    if place.starts_with("generated:") {
+        return Vec::new();
+    }
     let place = Path::new(place);
     let files = |folder: PathBuf| {
         let entries = std::fs::read_dir(folder).into_iter().flatten();
@@ -38,6 +42,8 @@ pub fn of_worlds(place: &str) -> Vec<PathBuf> {
     if place.is_dir() {
         let own = files(place.to_owned());
         own.chain(files(place.join("path_files"))).collect()
+    } else if place.extension().is_some_and(|end| end == "toml") {
+        vec![place.to_owned()]
     } else {
         vec![place.to_owned(), place.with_file_name("common.json")]
     }

@@ -253,11 +253,20 @@ fn chosen(arguments: &TuneArguments) -> Result<Vec<&'static Knob>, BadInput> {
         }
     }
     let among = |texts: &[String], knob: &Knob| texts.iter().any(|text| means(text, knob));
-    Ok(KNOBS
-        .iter()
+    let knobs = KNOBS.iter();
+    let only: Vec<&Knob> = knobs
         .filter(|knob| arguments.only.is_empty() || among(&arguments.only, knob))
-        .filter(|knob| !among(&arguments.fix, knob))
-        .collect())
+        .collect();
+    let left = only.iter().copied();
+    let left: Vec<&Knob> = left.filter(|knob| !among(&arguments.fix, knob)).collect();
+    if left.is_empty() {
+        return Err(BadInput(format!(
+            "--fix {}: no setting is left to move; without it {}",
+            arguments.fix.join(","),
+            names(&only)
+        )));
+    }
+    Ok(left)
 }
 
 fn names(knobs: &[&Knob]) -> String {

@@ -116,7 +116,8 @@ pub fn check(
         None => (sweep.all(None), None),
         Some(lowered) => {
             let jumps = Jumps::of(system, lowered);
-            let seen = lowered.open(|fixed| sweep.all(Some((&fixed, &jumps))));
+            let seen = lowered
+                .open(|fixed| fixed.firing(|evaluator| sweep.all(Some((evaluator, &jumps)))));
             watch.begin("bounding the error of fixed point", None);
             let both = seen.accuracy.iter().zip(bounds(system, lowered));
             let errors = both.map(|(measured, bounds)| Errors {

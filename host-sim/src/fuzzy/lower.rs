@@ -6,6 +6,7 @@
 //! ```
 
 mod antecedent;
+mod firing;
 mod format;
 mod pieces;
 mod set;
@@ -176,19 +177,16 @@ impl<'a> Fixed<'a> {
     ///
     /// With another number of inputs than the system's.
     pub fn steps(&self, inputs: &[i32]) -> (Vec<i32>, Vec<Degree>) {
-        let mut terms = vec![Degree::ZERO; self.system.term_count()];
-        let mut rules = vec![Degree::ZERO; self.system.rule_count()];
-        let mut outputs = vec![0; self.system.outputs().len()];
-        self.system
-            .evaluate(inputs, &mut terms, &mut rules, &mut outputs)
-            .expect("one value an input");
-        (outputs, rules)
+        steps(&self.system, inputs)
     }
-}
 
-impl Evaluator for Fixed<'_> {
-    /// Inputs are rounded to their formats; one that is missing or NaN has no fixed-point form: then no rule fires.
-    fn evaluate(&self, inputs: &[f64]) -> Evaluation {
+    /// Evaluates it in the variables' units, by `evaluate` in their steps. Inputs are rounded to their formats; one that is
+    /// missing or NaN has no fixed-point form: then no rule fires.
+    fn by(
+        &self,
+        inputs: &[f64],
+        evaluate: impl FnOnce(&[i32]) -> (Vec<i32>, Vec<Degree>),
+    ) -> Evaluation {
         let formats = self.tables.inputs.iter().map(|input| input.format);
         let steps: Option<Vec<i32>> = formats
             .enumerate()
@@ -198,7 +196,7 @@ impl Evaluator for Fixed<'_> {
             })
             .collect();
         let (outputs, rules) = match steps {
-            Some(steps) => self.steps(&steps),
+            Some(steps) => evaluate(&steps),
             None => (
                 self.system.outputs().iter().map(|o| o.default).collect(),
                 vec![Degree::ZERO; self.system.rule_count()],
@@ -215,6 +213,24 @@ impl Evaluator for Fixed<'_> {
                 .collect(),
         }
     }
+}
+
+impl Evaluator for Fixed<'_> {
+    /// Inputs are rounded to their formats; one that is missing or NaN has no fixed-point form: then no rule fires.
+    fn evaluate(&self, inputs: &[f64]) -> Evaluation {
+        self.by(inputs, |inputs| self.steps(inputs))
+    }
+}
+
+/// The library's evaluation in memory of the right sizes: the outputs, and every rule's degree.
+fn steps(system: &system::System<'_>, inputs: &[i32]) -> (Vec<i32>, Vec<Degree>) {
+    let mut terms = vec![Degree::ZERO; system.term_count()];
+    let mut rules = vec![Degree::ZERO; system.rule_count()];
+    let mut outputs = vec![0; system.outputs().len()];
+    system
+        .evaluate(inputs, &mut terms, &mut rules, &mut outputs)
+        .expect("one value an input");
+    (outputs, rules)
 }
 
 #[cfg(test)]

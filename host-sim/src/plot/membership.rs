@@ -129,6 +129,13 @@ const HEIGHT: f64 = 168.0;
 /// From one panel to the next, and down to the first.
 const PITCH: f64 = HEIGHT + 104.0;
 const FIRST: f64 = 96.0;
+/// Of names, and from one row of them to the next.
+const SIZE: f64 = 13.5;
+const ROW: f64 = 16.0;
+/// Rows of names that there is room for over every panel; more of them push it down.
+const ROWS: usize = 2;
+/// The longest line of names.
+const LINE: f64 = 380.0;
 
 /// Draws variables below one another.
 ///
@@ -139,19 +146,33 @@ pub fn membership_svg(title: &str, variables: &[Variable]) -> Result<String> {
         variable.check()?;
     }
     let width = WIDTH - RIGHT - LEFT;
-    let height = FIRST + variables.len().max(1) as f64 * PITCH - 44.0;
+    let mut top = FIRST;
+    let mut rects = Vec::new();
+    for variable in variables {
+        top += ROW * more_rows(variable, width) as f64;
+        rects.push(Rect::new(LEFT, top, width, HEIGHT));
+        top += PITCH;
+    }
+    let height = top.max(FIRST + PITCH) - 44.0;
     document(WIDTH, height, |canvas| {
         canvas.heading(title)?;
-        for (index, variable) in variables.iter().enumerate() {
-            let rect = Rect::new(LEFT, FIRST + PITCH * index as f64, width, HEIGHT);
+        for (variable, rect) in variables.iter().zip(rects) {
             draw(canvas, variable, rect)?;
         }
         Ok(())
     })
 }
 
-fn draw(canvas: &Canvas, variable: &Variable, rect: Rect) -> Result<()> {
-    let panel = Panel {
+/// Rows of names for which there is no room over a panel.
+fn more_rows(variable: &Variable, width: f64) -> usize {
+    let panel = panel(variable, Rect::new(LEFT, 0.0, width, HEIGHT));
+    let labels = labels(variable, &panel);
+    let rows = labels.iter().map(|label| label.row + 1).max();
+    rows.unwrap_or(0).saturating_sub(ROWS)
+}
+
+fn panel(variable: &Variable, rect: Rect) -> Panel {
+    Panel {
         rect,
         x: variable.span(),
         y: 0.0..1.08,
@@ -160,7 +181,11 @@ fn draw(canvas: &Canvas, variable: &Variable, rect: Rect) -> Result<()> {
         x_name: variable.axis.label(),
         y_name: variable.kind.clone(),
         x_numbers: true,
-    };
+    }
+}
+
+fn draw(canvas: &Canvas, variable: &Variable, rect: Rect) -> Result<()> {
+    let panel = panel(variable, rect);
     panel.axes(canvas, true)?;
     let count = variable.terms.len();
     for (index, term) in variable.terms.iter().enumerate() {
@@ -294,9 +319,17 @@ fn place(form: &Form, shown: &Range<f64>) -> Option<f64> {
     }
 }
 
-/// Names over the terms, in a second row where neighbours would touch.
-fn names(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
-    let count = variable.terms.len();
+/// A line of names over a panel: what it says, around which x, in which row from below, in whose colour.
+struct Label {
+    text: String,
+    centre: f64,
+    row: usize,
+    term: usize,
+}
+
+/// The names of terms over their places, in a second row where neighbours would touch. Those at one place stand together, in
+/// the first one's colour, in as many lines as they take.
+fn labels(variable: &Variable, panel: &Panel) -> Vec<Label> {
     let mut places: Vec<(f64, usize)> = variable
         .terms
         .iter()
@@ -304,33 +337,72 @@ fn names(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
         .filter_map(|(index, term)| Some((place(&term.form, &panel.x)?, index)))
         .collect();
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut ends = [f64::NEG_INFINITY; 2];
-    // Terms at one place are named together, in the first one's colour.
     let same = |a: &(f64, usize), b: &(f64, usize)| {
         (panel.at(a.0, 1.0).0 - panel.at(b.0, 1.0).0).abs() < 1.0
     };
+    let mut labels = Vec::new();
+    // How far each row is written.
+    let mut ends: Vec<f64> = Vec::new();
     for together in places.chunk_by(same) {
-        let (at, index) = together[0];
-        let all: Vec<&str> = together
-            .iter()
-            .map(|(_, index)| variable.terms[*index].name.as_str())
-            .collect();
-        let name = fitted(&all.join(", "), 13.5, 120.0 * all.len() as f64);
-        let width = text_width(&name, 13.5);
+        let (at, term) = together[0];
         let x = panel.at(at, 1.0).0;
         if x < panel.rect.left - 1.0 || x > panel.rect.right + 1.0 {
             continue;
         }
-        let from = (x - width / 2.0).min(panel.rect.right + 18.0 - width);
-        let row = (0..2).find(|&row| from > ends[row] + 5.0);
+        let names = together.iter();
+        let names = names.map(|&(_, index)| fitted(&variable.terms[index].name, SIZE, 120.0));
+        let lines = lines(names);
+        let widths = lines.iter().map(|line| text_width(line, SIZE));
+        let width = widths.fold(0.0, f64::max);
+        let from = (x - width / 2.0)
+            .min(panel.rect.right + 18.0 - width)
+            .max(8.0);
+        let end = |row: usize| ends.get(row).copied().unwrap_or(f64::NEG_INFINITY);
+        let fits = |&row: &usize| (row..row + lines.len()).all(|row| from > end(row) + 5.0);
         // A name without room is left out rather than printed over its neighbour.
-        let Some(row) = row else { continue };
-        ends[row] = from + width;
-        let at = (
-            from + width / 2.0,
-            panel.rect.top - 12.0 - 16.0 * row as f64,
-        );
-        canvas.text(&name, at, 13.5, colour(index, count), CENTRED)?;
+        let Some(row) = (0..ROWS).find(fits) else {
+            continue;
+        };
+        ends.resize(ends.len().max(row + lines.len()), f64::NEG_INFINITY);
+        ends[row..row + lines.len()].fill(from + width);
+        for (above, text) in lines.into_iter().rev().enumerate() {
+            labels.push(Label {
+                text,
+                centre: from + width / 2.0,
+                row: row + above,
+                term,
+            });
+        }
+    }
+    labels
+}
+
+/// Names in lines, commas between them.
+fn lines(names: impl Iterator<Item = String>) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for name in names {
+        match lines.last_mut() {
+            None => lines.push(name),
+            Some(line) => {
+                line.push(',');
+                let longer = format!("{line} {name}");
+                match text_width(&longer, SIZE) <= LINE {
+                    true => *line = longer,
+                    false => lines.push(name),
+                }
+            }
+        }
+    }
+    lines
+}
+
+/// Writes the names, and under the axis those of terms that have no place in it.
+fn names(canvas: &Canvas, variable: &Variable, panel: &Panel) -> Result<()> {
+    let count = variable.terms.len();
+    for label in labels(variable, panel) {
+        let up = 12.0 + ROW * label.row as f64;
+        let at = (label.centre, panel.rect.top - up);
+        canvas.text(&label.text, at, SIZE, colour(label.term, count), CENTRED)?;
     }
     let nowhere = |term: &&TermCurve| {
         !matches!(term.form, Form::Text(_)) && place(&term.form, &panel.x).is_none()
@@ -400,6 +472,37 @@ mod tests {
             variables[0].terms.push(twin);
         }
         assert!(drawn(&variables).contains("abeam, beside, across"));
+    }
+
+    #[test]
+    fn many_names_at_one_place_stay_inside_the_picture() {
+        let mut variables = variables();
+        variables[1].terms = (1..=12)
+            .map(|i| TermCurve {
+                name: format!("rather long {i}"),
+                form: Form::Stem(30.0),
+            })
+            .collect();
+        let svg = drawn(&variables);
+        for i in 1..=12 {
+            assert!(svg.contains(&format!("rather long {i}")), "{i}");
+        }
+        let panel = panel(&variables[1], Rect::new(LEFT, 0.0, 500.0, HEIGHT));
+        let labels = labels(&variables[1], &panel);
+        let rows: Vec<usize> = labels.iter().map(|label| label.row).collect();
+        assert_eq!(rows, (0..labels.len()).collect::<Vec<_>>());
+        for label in &labels {
+            let half = text_width(&label.text, SIZE) / 2.0;
+            let inside = label.centre - half >= 0.0 && label.centre + half <= WIDTH;
+            assert!(inside && half <= LINE / 2.0, "{}", label.text);
+        }
+        // The panel makes room for them, and the one above it stays where it is.
+        let height = |svg: &str| -> f64 {
+            let (_, rest) = svg.split_once("height=\"").unwrap();
+            rest.split_once('"').unwrap().0.parse().unwrap()
+        };
+        let few = height(&drawn(&self::variables()));
+        assert_eq!(height(&svg), few + ROW * (labels.len() - ROWS) as f64);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Sources of C: compiled with every warning an error and with what C leaves open trapped, run, and compiled for
 //! microcontrollers.
 
-use super::systems::{Made, designs, random_systems, weird_names};
+use super::systems::{Made, crowd, designs, random_systems, weird_names};
 use super::{campaign, cases, folder, put};
 use host_sim::fuzzy::emit::c::write;
 use std::fmt::Write;
@@ -97,6 +97,7 @@ fn written(folder: &Path, systems: &[Made]) -> Vec<String> {
 fn the_same_integers_as_the_library() {
     let mut systems = designs();
     systems.push(weird_names());
+    systems.push(crowd());
     systems.extend(random_systems(campaign().0));
     let folder = folder("c");
     let sources = written(&folder, &systems);

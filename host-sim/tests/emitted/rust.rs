@@ -1,7 +1,7 @@
 //! Modules of Rust, compiled as one crate without std.
 
 use super::fast;
-use super::systems::{Made, designs, fast_systems, random_systems, weird_names};
+use super::systems::{Made, crowd, designs, fast_systems, random_systems, weird_names};
 use super::{campaign, cases, folder, put};
 use host_sim::fuzzy::emit::rust::{Route, write};
 use std::fmt::Write;
@@ -76,6 +76,7 @@ fn the_same_integers_as_the_library() {
     let (count, long) = campaign();
     let mut general = designs();
     general.push(weird_names());
+    general.push(crowd());
     general.extend(random_systems(count));
     let fast = fast_systems(count / 4);
     let folder = folder("rust");

@@ -1,7 +1,7 @@
 //! The systems that are made into code.
 
 use host_sim::fuzzy::emit::Design;
-use host_sim::fuzzy::files::load;
+use host_sim::fuzzy::files::{Format, load, parse};
 use host_sim::fuzzy::lower::{Lowered, lower};
 use host_sim::fuzzy::model::{
     Antecedent, Conclusion, Conjunction, Defuzzifier, Input, Merge, Output, OutputTerm, Place,
@@ -136,6 +136,23 @@ pub fn weird_names() -> Made {
         output.terms.iter_mut().for_each(|term| term.name = next());
     }
     Made::new("weird names".to_owned(), system)
+}
+
+/// Hundreds of rules of full weight that a centre of sums adds: at one place more than 32 bits.
+pub fn crowd() -> Made {
+    let text = "Engine: crowd\nInputVariable: x\n  range: 0 10\n  term: low Ramp 8 2\n  term: high Ramp 2 8\n\
+                OutputVariable: y\n  range: 0 30\n  aggregation: UnboundedSum\n  defuzzifier: Centroid 60\n  \
+                term: rising Ramp 0 15\n  term: much Ramp 10 20\n  term: little Triangle 0 5 10\n\
+                RuleBlock: all\n  disjunction: Maximum\n  implication: Minimum\n  activation: General\n  \
+                rule: if x is low or x is high then y is rising\n  \
+                rule: if x is low or x is high then y is much\n  \
+                rule: if x is low then y is little\n";
+    let mut system = parse("crowd", text.as_bytes(), Format::Fll).unwrap();
+    // A file says nothing twice.
+    let rules = &mut system.blocks[0].rules;
+    let each = std::mem::take(rules).into_iter().zip([150, 150, 20]);
+    *rules = each.flat_map(|(rule, times)| vec![rule; times]).collect();
+    Made::new("a crowd of rules".to_owned(), system)
 }
 
 /// Systems for the fast route: the designs that fit, and random ones, every second of them for a twin table.

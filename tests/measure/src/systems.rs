@@ -4,7 +4,7 @@ use crate::machine::{Images, MACHINES, Machine, Time};
 use crate::page::{Page, compiler, grouped};
 use anyhow::ensure;
 use fuzzypilot::fuzzy::system::Controller;
-use replica::systems::{CURVED, MAMDANI, NUMBERS, TABLE, digest, inputs};
+use replica::systems::{CROWD, CURVED, MAMDANI, NUMBERS, TABLE, digest, inputs};
 
 /// What an evaluation costs.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -126,6 +126,10 @@ pub fn count(machine: &Machine, images: &Images) -> anyhow::Result<Vec<Cost>> {
     one(
         "2 inputs, 4 rules, 2 centroids of 50 samples",
         here(&MAMDANI),
+    )?;
+    one(
+        "1 input, 320 rules, centre of sums of 20 samples",
+        here(&CROWD),
     )?;
     ensure!(words.next().is_none(), "the image wrote too much");
     Ok(costs)

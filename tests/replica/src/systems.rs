@@ -1,4 +1,4 @@
-//! Fuzzy systems of three kinds, to be evaluated on emulated microcontrollers and on the desktop alike.
+//! Fuzzy systems of four kinds, to be evaluated on emulated microcontrollers and on the desktop alike.
 
 use fixed::types::I16F16;
 use fuzzypilot::fuzzy::Grade;
@@ -192,6 +192,48 @@ pub static MAMDANI: Mamdani = {
             Rule::new(&[&[Is(0, 0), Is(1, 1)]], &[(0, 1), (1, 0)]),
         ])],
         &[output(Merge::Max), output(Merge::Sum)],
+    ))
+};
+
+/// One input, hundreds of rules, a centre of sums.
+pub type Crowd = Controller<'static, 1, 2, 320, 1>;
+
+const PLACES: Samples = Samples::ends([q("0"), q("30")], 20);
+static RISING: [Grade; 20] = PLACES.of(&ramp(q("0"), q("15")));
+static HIGH: [Grade; 20] = PLACES.of(&ramp(q("10"), q("20")));
+static LOW: [Grade; 20] = PLACES.of(&triangle(q("0"), q("5"), q("10")));
+
+/// At both ends of the input 300 rules hold fully, and from 20 on so do their sets: what they add there takes more than 32
+/// bits.
+pub static CROWD: Crowd = {
+    const RULES: [Rule; 320] = {
+        let rising = Rule::new(&[&[Is(0, 0)], &[Is(0, 1)]], &[(0, 0)]);
+        let high = Rule::new(&[&[Is(0, 0)], &[Is(0, 1)]], &[(0, 1)]);
+        let mut rules = [Rule::new(&[&[Is(0, 0)]], &[(0, 2)]); 320];
+        let mut i = 0;
+        while i < 300 {
+            rules[i] = if i % 2 == 0 { rising } else { high };
+            i += 1;
+        }
+        rules
+    };
+    Controller::new(System::new(
+        &[Input::new(
+            [q("0"), q("10")],
+            &[&ramp(q("8"), q("2")), &ramp(q("2"), q("8"))],
+        )],
+        &[Block::min(&RULES)],
+        &[Output {
+            range: [q("0"), q("30")],
+            clamp: false,
+            default: q("0"),
+            complete: true,
+            defuzzifier: Defuzzifier::Centroid {
+                merge: Merge::Sum,
+                samples: PLACES,
+                terms: &[&RISING, &HIGH, &LOW],
+            },
+        }],
     ))
 };
 

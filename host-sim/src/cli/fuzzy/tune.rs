@@ -3,6 +3,7 @@
 mod goal;
 mod report;
 mod result;
+mod selected;
 
 use super::convert::refused;
 use super::design::Design;
@@ -12,13 +13,13 @@ use crate::cli::{
 };
 use clap::{ArgGroup, Args};
 use goal::Goal;
-use host_sim::fuzzy::model::System;
-use host_sim::fuzzy::tune::{Movable, Search, Selection, Variable};
+use host_sim::fuzzy::tune::{Movable, Search, Selection};
 use host_sim::scenario::shown;
 use host_sim::search::state::{Question, State};
 use host_sim::search::{Settings, Stop};
 use report::Report;
 use result::Written;
+use selected::{named, what_could};
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -113,6 +114,12 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         even: Vec::new(),
     };
     goal.hold(system, &mut selection);
+    let movable = Movable::new(system, &selection);
+    if movable.is_empty() {
+        let mut free = Selection::default();
+        goal.hold(system, &mut free);
+        return Err(what_could(system, &free, &arguments.only, &arguments.fix).into());
+    }
     let question = Question {
         design: Question::fingerprint(&format!(
             "{:?}",
@@ -136,7 +143,6 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         eprintln!("note: in the result {change}");
     }
     listen()?;
-    let movable = Movable::new(system, &selection);
     let search = Search {
         movable: &movable,
         objective: goal.objective(),
@@ -230,47 +236,4 @@ fn command(arguments: &TuneArguments) -> String {
         command += " --adapt";
     }
     command
-}
-
-/// Variables and terms by their names.
-fn named(
-    system: &System,
-    flag: &str,
-    texts: &[String],
-) -> Result<Vec<(Variable, Option<usize>)>, BadInput> {
-    let mut variables: Vec<(&str, Variable, Vec<&str>)> = Vec::new();
-    for (index, input) in system.inputs.iter().enumerate() {
-        let terms = input.terms.iter().map(|term| term.name.as_str());
-        variables.push((&input.name, Variable::Input(index), terms.collect()));
-    }
-    for (index, output) in system.outputs.iter().enumerate() {
-        let terms = output.terms.iter().map(|term| term.name.as_str());
-        variables.push((&output.name, Variable::Output(index), terms.collect()));
-    }
-    let names: Vec<&str> = variables.iter().map(|(name, ..)| *name).collect();
-    let find = |text: &String| {
-        // A name may hold a dot itself.
-        let mut splits = std::iter::once((text.as_str(), None)).chain(
-            text.match_indices('.')
-                .map(|(at, _)| (&text[..at], Some(&text[at + 1..]))),
-        );
-        let found = splits.find_map(|(name, term)| {
-            let (_, variable, terms) = variables.iter().find(|(known, ..)| *known == name)?;
-            match term {
-                None => Some((*variable, None)),
-                Some(term) => {
-                    let index = terms.iter().position(|known| *known == term)?;
-                    Some((*variable, Some(index)))
-                }
-            }
-        });
-        found.ok_or_else(|| {
-            let text = shown(text);
-            let names = names.join(", ");
-            BadInput(format!(
-                "{flag} {text}: no such variable or term; allowed are {names}, alone or with `.` and one of their terms"
-            ))
-        })
-    };
-    texts.iter().map(find).collect()
 }

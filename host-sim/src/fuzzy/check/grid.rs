@@ -132,7 +132,7 @@ fn cost(system: &System) -> usize {
         match (output.defuzzifier, output.merge) {
             (Defuzzifier::WeightedAverage, Merge::Sum) => 1 + conclusions,
             (Defuzzifier::WeightedAverage, Merge::Max) => 1 + conclusions * terms,
-            // In `f64` rules that conclude the same are one; fixed point looks at every rule at every sample.
+            // In `f64` rules that conclude the same are one; in fixed point all of them may fire and be added.
             (Defuzzifier::Centroid { points, .. }, _) => {
                 points * (count.min(2 * terms) + conclusions)
             }

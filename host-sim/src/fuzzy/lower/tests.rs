@@ -333,6 +333,63 @@ fn thousands_of_rules_have_a_fixed_point() {
 }
 
 #[test]
+fn the_rules_that_count_make_the_same_integers() {
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    let (mut centroids, mut silent) = (0, 0);
+    for _ in 0..300 {
+        let model = random::system(&mut rng);
+        let Ok(lowered) = lower(&model) else { continue };
+        let points: Vec<Vec<f64>> = (0..30)
+            .map(|_| {
+                let inputs = model.inputs.iter().map(|input| &input.range);
+                let at = |range: &std::ops::RangeInclusive<f64>| {
+                    let place: f64 = rng.random_range(-0.05..=1.05);
+                    range.start() + place * (range.end() - range.start())
+                };
+                inputs.map(at).collect()
+            })
+            .collect();
+        lowered.open(|fixed| {
+            fixed.firing(|quick| {
+                for point in &points {
+                    let whole = fixed.evaluate(point);
+                    assert_eq!(quick.evaluate(point), whole, "{model:?} at {point:?}");
+                    silent += usize::from(whole.rules.iter().all(|degree| *degree == 0.0));
+                }
+            });
+        });
+        let mut outputs = model.outputs.iter();
+        centroids +=
+            usize::from(outputs.any(|o| matches!(o.defuzzifier, Defuzzifier::Centroid { .. })));
+    }
+    assert!(centroids > 50 && silent > 50, "{centroids}, {silent}");
+}
+
+/// All rules' conclusions together, in ranges of the output: 2^30 where the coarsest steps cut the range into 256, down to half
+/// of that where they cut it into almost 512.
+#[test]
+fn a_weighted_average_of_too_large_numbers_is_refused() {
+    let times = |number: f64, range: f64| {
+        let model = crowd(2048, |model| {
+            model.outputs[0].range = 0.0..=range;
+            model.outputs[0].clamp = true;
+            model.outputs[0].terms[1].conclusion = Conclusion::Constant(number * range);
+        });
+        lower(&model).map(|lowered| lowered.tables().outputs[0].format.fraction)
+    };
+    // 2048 = 2^11 of the 4096 rules conclude it.
+    let most = f64::from(1 << 19);
+    assert_eq!(times(most - 1.0, 1.0), Ok(8));
+    assert_eq!(
+        times(most, 1.0).unwrap_err().to_string(),
+        "line 7, column 3: the conclusions of the output `fan`'s 4096 rules are too large for its range: fewer rules, or \
+         conclusions nearer to the range, are possible"
+    );
+    assert_eq!(times(most / 2.0, 511.0 / 256.0), Ok(8));
+    assert!(times(most / 1.99, 511.0 / 256.0).is_err());
+}
+
+#[test]
 fn what_does_not_fit_is_named_with_its_place() {
     let message = |change: &dyn Fn(&mut System)| {
         let mut model = small();

@@ -47,7 +47,7 @@ pub type Fan = fixed::FixedI32<fixed::types::extra::U8>;
 
 /// Where the inputs' terms have their peaks.
 #[rustfmt::skip]
-static INPUTS: Antecedents<3, 2> = Antecedents {
+pub static INPUTS: Antecedents<3, 2> = Antecedents {
     // temperature: cool, warm, hot
     rows: Partition::new([I16F16::lit("18"), I16F16::lit("24"), I16F16::lit("32")]),
     // humidity: dry, damp
@@ -71,7 +71,7 @@ type FanTable = fixed::FixedI16<fixed::types::extra::U8>;
 // if temperature is hot and humidity is damp then fan is high
 /// `fan`: a row for each term of `temperature`, a column for each of `humidity`.
 #[rustfmt::skip]
-static FAN_RULES: RuleTable<3, 2, FanTable> = RuleTable::new(
+pub static FAN_RULES: RuleTable<3, 2, FanTable> = RuleTable::new(
     // dry       damp
     [[FAN_LOW , FAN_LOW ],  // cool
      [FAN_LOW , FAN_MID ],  // warm

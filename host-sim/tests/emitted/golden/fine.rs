@@ -171,9 +171,9 @@ const DEFLECTION_RULES: RuleTable<5, 5, DeflectionTable> = RuleTable::new(
     ),
 );
 
-/// Both tables in one, which is all of them that is kept.
+/// Both tables in one, which is all of them that is kept; for positions that are at hand, see `TwinTable::evaluate`.
 #[rustfmt::skip]
-static RULES: TwinTable<5, 5, 4> = TwinTable::new(&INPUTS, &SPEED_RULES, &DEFLECTION_RULES);
+pub static RULES: TwinTable<5, 5, 4> = TwinTable::new(&INPUTS, &SPEED_RULES, &DEFLECTION_RULES);
 
 /// The outputs for inputs, each in steps of its variable.
 #[inline]

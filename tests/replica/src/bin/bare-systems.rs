@@ -6,7 +6,7 @@
 mod image {
     use core::hint::black_box;
     use replica::shell::halt;
-    use replica::systems::{CURVED, MAMDANI, TABLE};
+    use replica::systems::{CROWD, CURVED, MAMDANI, TABLE};
 
     #[unsafe(no_mangle)]
     extern "C" fn image_main() -> ! {
@@ -16,6 +16,7 @@ mod image {
             black_box(TABLE.evaluate([x, y]));
             black_box(CURVED.evaluate(inputs));
             black_box(MAMDANI.evaluate([x, y]));
+            black_box(CROWD.evaluate([x]));
             // And one that is not known here.
             let (mut terms, mut rules, mut outputs) = black_box(Default::default());
             let system = black_box(TABLE.system());

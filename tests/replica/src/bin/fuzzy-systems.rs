@@ -10,7 +10,7 @@ mod image {
     use replica::files::Output;
     use replica::owned::Owned;
     use replica::systems::{
-        CURVED, Curved, MAMDANI, Mamdani, NUMBERS, TABLE, Table, digest, inputs,
+        CROWD, CURVED, Crowd, Curved, MAMDANI, Mamdani, NUMBERS, TABLE, Table, digest, inputs,
     };
 
     static OUTPUT: Owned<Output> = Owned::new(Output::new());
@@ -29,6 +29,11 @@ mod image {
     #[inline(never)]
     fn mamdani(inputs: [i32; 2]) -> Evaluation<4, 2> {
         MAMDANI.evaluate(inputs)
+    }
+
+    #[inline(never)]
+    fn crowd(inputs: [i32; 1]) -> Evaluation<320, 1> {
+        CROWD.evaluate(inputs)
     }
 
     fn play<const I: usize, const T: usize, const R: usize, const O: usize>(
@@ -58,6 +63,7 @@ mod image {
         play(output, &TABLE as &Table, black_box(table));
         play(output, &CURVED as &Curved, black_box(curved));
         play(output, &MAMDANI as &Mamdani, black_box(mamdani));
+        play(output, &CROWD as &Crowd, black_box(crowd));
         output.finish().ok_or("the file `out` is not whole")
     }
 

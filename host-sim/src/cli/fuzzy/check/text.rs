@@ -60,8 +60,8 @@ fn gaps(findings: &Findings) -> String {
     let title = match findings.search {
         Search::Exact => "gaps, where no rule fires".to_owned(),
         _ => format!(
-            "gaps, where no rule fires, as {} points show them (too many pieces for the exact search)",
-            findings.points
+            "gaps, where no rule fires, as {} points of {} show them (too many pieces for the exact search)",
+            findings.points, findings.points_asked
         ),
     };
     let mut text = section(&title, findings.gaps.len(), text);
@@ -182,8 +182,9 @@ fn non_monotone(findings: &Findings) -> String {
     }
     if findings.non_monotone.iter().any(|of| of.sampled) {
         let title = format!(
-            "{on_grid} of {} points, by more than {} % of the range, sampled",
+            "{on_grid} of {} points of {}, by more than {} % of the range, sampled",
             findings.points,
+            findings.points_asked,
             100.0 * LEAST_TURN
         );
         text += &section(&title, rows, ripples);
@@ -258,19 +259,22 @@ fn errors(findings: &Findings) -> String {
         }
         false => "",
     };
-    let thinner = match findings.points < findings.points_asked / 2 {
-        true => format!(
-            " (each takes long, with so many rules and samples: {} were asked for)",
-            findings.points_asked
-        ),
-        false => String::new(),
-    };
     format!(
-        "fixed point against f64, on a grid of {} points{thinner}:\n{text}\n\
+        "fixed point against f64, on {}:\n{text}\n\
          \"nowhere above\" holds between the points too: it is found from the terms' errors and the least weight, box by \
          box.\n{fast}",
-        findings.points
+        grid(findings)
     )
+}
+
+/// How many points were asked, of how many.
+fn grid(findings: &Findings) -> String {
+    let (points, asked) = (findings.points, findings.points_asked);
+    let thinner = match points < asked / 2 {
+        true => "; each takes long, with so many rules and samples",
+        false => "",
+    };
+    format!("a grid of {points} points (of {asked} that were asked for{thinner})")
 }
 
 fn at_line(line: usize, text: &str) -> String {

@@ -138,7 +138,7 @@ impl<'a> Writer<'a> {
 
     fn inputs(&self, text: &mut String) {
         let [rows, columns] = &self.base.axes;
-        let kind = if self.twin { "const" } else { "static" };
+        let kind = if self.twin { "const" } else { "pub static" };
         let _ = write!(
             text,
             "\n/// Where the inputs' terms have their peaks.\n#[rustfmt::skip]\n{kind} INPUTS: Antecedents<{}, {}> = Antecedents {{\n",
@@ -214,7 +214,7 @@ impl<'a> Writer<'a> {
     fn table(&self, text: &mut String, table: &Table, names: &Variable, format: &str, of: &str) {
         let inputs = &self.design.lowered.tables().inputs;
         let [rows, columns] = &self.base.axes;
-        let kind = if self.twin { "const" } else { "static" };
+        let kind = if self.twin { "const" } else { "pub static" };
         let widest = names.terms.iter().map(String::len).max().unwrap_or(0);
         let _ = write!(
             text,
@@ -300,8 +300,9 @@ impl<'a> Writer<'a> {
         let [[row, last_row], [column, last_column]] = [ends(&rows.peaks), ends(&columns.peaks)];
         let _ = write!(
             text,
-            "\n/// Both tables in one, which is all of them that is kept.\n#[rustfmt::skip]\n\
-             static RULES: TwinTable<{r}, {c}, {}> = TwinTable::new(&INPUTS, &{first}_RULES, &{second}_RULES);\n",
+            "\n/// Both tables in one, which is all of them that is kept; for positions that are at hand, see `TwinTable::evaluate`.\n\
+             #[rustfmt::skip]\n\
+             pub static RULES: TwinTable<{r}, {c}, {}> = TwinTable::new(&INPUTS, &{first}_RULES, &{second}_RULES);\n",
             r - 1
         );
         let _ = write!(

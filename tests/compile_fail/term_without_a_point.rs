@@ -1,0 +1,25 @@
+//! A term of no point would be no function.
+use fuzzypilot::fuzzy::system::shape::{points, ramp};
+use fuzzypilot::fuzzy::system::{
+    Block, Defuzzifier, Input, Literal::Is, Merge, Number::Constant, Output, Rule, System,
+};
+
+pub static SYSTEM: System = System::new(
+    &[Input::new([0, 10], &[&points([]), &ramp(0, 10)])],
+    &[Block::min(&[
+        Rule::new(&[&[Is(0, 0)]], &[(0, 0)]),
+        Rule::new(&[&[Is(0, 1)]], &[(0, 1)]),
+    ])],
+    &[Output {
+        range: [0, 100],
+        clamp: false,
+        default: 0,
+        complete: false,
+        defuzzifier: Defuzzifier::WeightedAverage {
+            merge: Merge::Sum,
+            terms: &[Constant(0), Constant(100)],
+        },
+    }],
+);
+
+fn main() {}
