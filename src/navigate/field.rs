@@ -231,14 +231,14 @@ impl Field {
         while *budget > 0 {
             let Some(point) = memory.local(index.into()) else {
                 self.shunned.stamp(&mut self.cost, self.corner);
-                *budget = budget.wrapping_sub((self.shunned.len() as i32).wrapping_mul(4));
+                *budget = budget.wrapping_sub((self.shunned.len() as i32).wrapping_mul(9));
                 self.phase = Phase::Search;
                 return;
             };
             let place = Vector::of(memory.to_world(point) - self.corner);
             costs.stamp(&mut self.cost, place);
             index = index.wrapping_add(1);
-            *budget = budget.wrapping_sub(4);
+            *budget = budget.wrapping_sub(3);
         }
         self.phase = Phase::Stamp(index);
     }

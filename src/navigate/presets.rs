@@ -123,7 +123,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
             shun: 12,
-            budget: 400,
+            budget: 480,
         },
         heading: HeadingParams {
             least: m!("0.08"),

@@ -113,7 +113,8 @@ impl Search {
                 self.settle(cost, row, budget);
                 continue;
             }
-            *budget = budget.wrapping_sub(2);
+            // Both passes over the rows cost as much as three cells.
+            *budget = budget.wrapping_sub(3);
             let next = self.least.iter().copied().min().unwrap_or(u16::MAX);
             if next >= self.best.0 {
                 return true;
@@ -131,6 +132,8 @@ impl Search {
     /// Settles the cells of a row that are cheap enough.
     fn settle(&mut self, cost: &[u8; CELLS], row: usize, budget: &mut i32) {
         let mut waiting = core::mem::replace(&mut self.active[row & (SIDE - 1)], 0);
+        // What waits on is looked at in vain.
+        *budget = budget.wrapping_sub(1);
         self.least[row & (SIDE - 1)] = u16::MAX;
         let (mut later, mut least) = (0u32, u16::MAX);
         let part = self

@@ -38,7 +38,7 @@ pub(super) fn tuned<const N: usize>(mut params: NavigatorParams<N>) -> Navigator
     params.steer.flank = m!("0.036");
     params.supervisor.enter = m!("0.5375");
     params.supervisor.enter_time = s!("0.3893");
-    params.supervisor.path_margin = m!("0.12");
+    params.supervisor.path_margin = m!("0.13");
     params.supervisor.leave = m!("0.06");
     params.supervisor.escape = m!("0.3728");
     params.supervisor.stuck = 3;
