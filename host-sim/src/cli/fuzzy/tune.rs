@@ -118,7 +118,9 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     if movable.is_empty() {
         let mut free = Selection::default();
         goal.hold(system, &mut free);
-        return Err(what_could(system, &free, &arguments.only, &arguments.fix).into());
+        let asked = [&arguments.only[..], &arguments.fix[..]];
+        let drives = !arguments.scenario.is_empty();
+        return Err(what_could(system, &free, asked, drives).into());
     }
     let question = Question {
         design: Question::fingerprint(&format!(

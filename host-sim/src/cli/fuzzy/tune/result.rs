@@ -130,7 +130,7 @@ impl Written {
                 command: &format!("host-sim fuzzy convert {name} --to rust"),
                 bounds: Some(&bounds(&said, &lowered)),
             },
-            rust::Route::Auto,
+            rust::Route::General,
         )
         .map_err(|why| anyhow!("{name}: {why}"))?;
         let mut variables = picture::variables(&design.system);
