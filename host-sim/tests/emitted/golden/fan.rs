@@ -1,6 +1,6 @@
 //! The fuzzy controller `fan`: 2 inputs, 1 output, 6 rules.
 //!
-//! Made by `host-sim fuzzy convert fan.fll --to rust --route general`:
+//! Made by `host-sim fuzzy convert fan.fll --to rust`:
 //! change the design and make it again rather than this file. It needs the crates `fuzzypilot` and `fixed`.
 //!
 //! Route: general, `fuzzypilot::fuzzy::system`. Every rule is evaluated; the work is the same for every input.

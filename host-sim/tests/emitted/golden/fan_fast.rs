@@ -1,6 +1,6 @@
 //! The fuzzy controller `fan`: 2 inputs, 1 output, 6 rules.
 //!
-//! Made by `host-sim fuzzy convert fan.fll --to rust`:
+//! Made by `host-sim fuzzy convert fan.fll --to rust --route fast`:
 //! change the design and make it again rather than this file. It needs the crates `fuzzypilot` and `fixed`.
 //!
 //! Route: fast, `fuzzypilot::fuzzy::RuleTable`, one an output. Only the four
