@@ -439,6 +439,28 @@ fn what_is_denied_fails() {
     assert_eq!(denied("holes").0, Some(2));
 }
 
+/// That points take long is said only where they do, and corners are told wherever they are left out.
+#[test]
+fn a_grid_says_what_it_leaves_out() {
+    let dir = tempdir().unwrap();
+    let looked = |points: &str| {
+        let args = [
+            "check", GREENHOUSE, "--points", points, "--json", "all.json",
+        ];
+        let said = done(dir.path(), &args);
+        let json = fs::read_to_string(dir.path().join("all.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert!(!said.contains("takes long"), "{said}");
+        assert_eq!(json["points_limited"], false);
+        (
+            said.contains("corners, which are left out: --points for more"),
+            json["corners"].clone(),
+        )
+    };
+    assert_eq!(looked("100"), (true, false.into()));
+    assert_eq!(looked("20000"), (false, true.into()));
+}
+
 #[test]
 fn a_place_that_cannot_be_written_is_bad_input() {
     let dir = tempdir().unwrap();

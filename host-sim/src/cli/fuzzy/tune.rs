@@ -103,7 +103,8 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         let file = arguments.design.file.display();
         return Err(BadInput(format!("{file}: no fixed point: {why}")).into());
     }
-    let written = Written::of(&arguments.design, system, arguments.adapt);
+    let drives = !arguments.scenario.is_empty();
+    let written = Written::of(&arguments.design, system, arguments.adapt, drives);
     let (_, renamed, _) = written
         .text(system)
         .map_err(|error| refused(&arguments.design.file, &error, arguments.adapt))?;
@@ -119,7 +120,6 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         let mut free = Selection::default();
         goal.hold(system, &mut free);
         let asked = [&arguments.only[..], &arguments.fix[..]];
-        let drives = !arguments.scenario.is_empty();
         return Err(what_could(system, &free, asked, drives).into());
     }
     let question = Question {
