@@ -5,6 +5,7 @@ pub mod check;
 pub mod describe;
 pub mod emit;
 pub mod evaluate;
+pub mod fast;
 pub mod files;
 pub mod lower;
 pub mod membership;

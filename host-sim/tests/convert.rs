@@ -349,6 +349,40 @@ fn names_of_c_and_of_rust_are_left_to_them() {
     assert!(module.contains("pub type Self2 ="), "{module}");
 }
 
+/// C has the general route's integers, so Rust has them, too, unless another route is asked for.
+#[test]
+fn rust_is_the_general_route_unless_told_otherwise() {
+    let folder = tempdir().unwrap();
+    let [fan, greenhouse] = ["fan.fll", "greenhouse.fll"].map(design);
+    let made = |design: &Path, route: &[&str]| {
+        let said = convert(folder.path())
+            .arg(design)
+            .args(["--to", "rust"])
+            .args(route)
+            .assert()
+            .success();
+        let [out, err] = [&said.get_output().stdout, &said.get_output().stderr]
+            .map(|text| String::from_utf8(text.clone()).unwrap());
+        // The head says the command.
+        let code = out.lines().filter(|line| !line.contains("Made by"));
+        (code.collect::<Vec<_>>().join("\n"), err)
+    };
+    let (general, silent) = made(&fan, &["--route", "general"]);
+    let (module, note) = made(&fan, &[]);
+    assert!(module == general && module.contains("Route: general"));
+    assert_eq!(
+        (silent.as_str(), note.as_str()),
+        (
+            "",
+            "note: --route fast is quicker and fits this design; its integers are others than C's: fractional bits are of `fan` 8 for 16\n"
+        )
+    );
+    let (fast, silent) = made(&fan, &["--route", "fast"]);
+    assert!(fast.contains("Route: fast") && silent.is_empty());
+    assert_eq!(made(&fan, &["--route", "auto"]), (fast, silent));
+    assert_eq!(made(&greenhouse, &[]).1, "");
+}
+
 #[test]
 fn code_that_cannot_be_is_refused() {
     let folder = tempdir().unwrap();
@@ -426,7 +460,7 @@ fn no_half_of_two_files_is_left() {
             "out",
         ])
         .assert()
-        .code(1);
+        .code(2);
     let left: Vec<_> = fs::read_dir(folder.path().join("out"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name())

@@ -439,11 +439,103 @@ fn what_is_denied_fails() {
     assert_eq!(denied("holes").0, Some(2));
 }
 
+/// That points take long is said only where they do, and corners are told wherever they are left out.
+#[test]
+fn a_grid_says_what_it_leaves_out() {
+    let dir = tempdir().unwrap();
+    let looked = |points: &str| {
+        let args = [
+            "check", GREENHOUSE, "--points", points, "--json", "all.json",
+        ];
+        let said = done(dir.path(), &args);
+        let json = fs::read_to_string(dir.path().join("all.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert!(!said.contains("takes long"), "{said}");
+        assert_eq!(json["points_limited"], false);
+        (
+            said.contains("corners, which are left out: --points for more"),
+            json["corners"].clone(),
+        )
+    };
+    assert_eq!(looked("100"), (true, false.into()));
+    assert_eq!(looked("20000"), (false, true.into()));
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_bad_input() {
+    let dir = tempdir().unwrap();
+    for args in [
+        &["check", FAN, "--points", "100", "--json", "no/x"][..],
+        &["eval", FAN, "--grid", "2", "--csv", "no/x"],
+        &["convert", FAN, "--to", "rust", "--out", "no/x"],
+    ] {
+        refused(dir.path(), args, &["no/x: cannot be written"]);
+    }
+}
+
+/// A fast module's values are whole steps of its own format, within what it announces; the general fixed point's are finer.
+#[test]
+fn what_a_fast_module_computes_is_seen() {
+    let dir = tempdir().unwrap();
+    let grid = |route: &str| {
+        let file = format!("{route}.csv");
+        let args = [
+            "eval", FAN, "--grid", "41", "--csv", &file, "--route", route,
+        ];
+        done(dir.path(), &args);
+        let text = fs::read_to_string(dir.path().join(file)).unwrap();
+        let mut lines = text.lines();
+        let head = lines.next().unwrap().to_owned();
+        let numbers = lines.map(|line| {
+            let cells = line.split(',').skip(2).map(|cell| cell.parse().unwrap());
+            cells.collect::<Vec<f64>>()
+        });
+        (head, numbers.collect::<Vec<_>>())
+    };
+    let ((general_head, general), (head, fast)) = (grid("general"), grid("fast"));
+    assert!(general_head.ends_with("fan,fan (fixed)") && head.ends_with("fan,fan (fast)"));
+    let whole = |rows: &[Vec<f64>]| rows.iter().all(|row| (row[1] * 256.0).fract() == 0.0);
+    assert!(whole(&fast) && !whole(&general));
+    let worst = |rows: &[Vec<f64>]| {
+        let errors = rows.iter().map(|row| (row[0] - row[1]).abs());
+        errors.fold(0.0, f64::max)
+    };
+    assert!((0.001..0.011).contains(&worst(&fast)), "{}", worst(&fast));
+    assert!(worst(&general) < 0.0008, "{}", worst(&general));
+    let point = ["--input", "temperature=28", "--input", "humidity=57.5"];
+    let said = done(
+        dir.path(),
+        &[&["eval", FAN, "--route", "fast"], &point[..]].concat(),
+    );
+    assert!(
+        said.contains("fast route") && !said.contains("fixed point"),
+        "{said}"
+    );
+    // Two outputs over even terms are a twin table: the robot's own.
+    let fine = concat!(env!("CARGO_MANIFEST_DIR"), "/designs/fine.fll");
+    let args = [
+        "eval", fine, "--grid", "9", "--csv", "fine.csv", "--route", "fast",
+    ];
+    done(dir.path(), &args);
+    refused(
+        dir.path(),
+        &[
+            "eval", GREENHOUSE, "--grid", "2", "--csv", "x.csv", "--route", "fast",
+        ],
+        &[
+            "greenhouse.fll: --route fast does not fit: it takes 2 inputs, and there are 4; allowed is --route general",
+        ],
+    );
+}
+
 /// The fast route's error is that which its modules announce, and counts where a module would take it.
 #[test]
 fn an_error_above_the_limit_fails() {
     let dir = tempdir().unwrap();
-    let said = done(dir.path(), &["check", FAN, "--points", "1000"]);
+    let said = done(
+        dir.path(),
+        &["check", FAN, "--points", "1000", "--route", "auto"],
+    );
     let rows = rows(&said);
     let share = |row: &[String]| row[8].trim_end_matches(" %").parse::<f64>().unwrap();
     let [general, fast] = ["≥ 1/2", "fast route"].map(|line| {
@@ -453,7 +545,10 @@ fn an_error_above_the_limit_fails() {
         share(row.unwrap())
     });
     assert!(general < 0.01 && fast > 0.01, "{said}");
-    let module = done(dir.path(), &["convert", FAN, "--to", "rust"]);
+    let module = done(
+        dir.path(),
+        &["convert", FAN, "--to", "rust", "--route", "fast"],
+    );
     let announced = module
         .lines()
         .find(|line| line.ends_with("of `fan`"))

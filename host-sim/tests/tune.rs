@@ -486,6 +486,10 @@ fn bad_wishes_are_refused() {
             &["--only wind", "temperature, humidity, fan"][..],
         ),
         (
+            "--only ,",
+            &["--only: found an empty name; allowed are temperature, "],
+        ),
+        (
             "--fix fan.none",
             &[
                 "--fix fan.none: `fan` has no term `none`; allowed are fan.",
@@ -495,7 +499,7 @@ fn bad_wishes_are_refused() {
         (
             "--only humidity",
             &[
-                "--only humidity: no number can move",
+                "--only humidity: no number can move (knots at the ends of a range or beyond stay);",
                 "; what can is temperature",
             ],
         ),
@@ -544,7 +548,10 @@ fn bad_wishes_are_refused() {
         ),
         (
             format!("{} --scenario line --only phi", fine.display()),
-            &["--only phi: no number can move", "what can is d, "],
+            &[
+                "--only phi: no number can move",
+                "all inputs but d); what can is d, ",
+            ],
         ),
     ] {
         refused(here, tune(here, &args), parts);

@@ -9,9 +9,10 @@ mod surface;
 pub mod table;
 mod tune;
 
+use crate::cli::{BadInput, put_all};
 use clap::{Args, Subcommand, ValueEnum};
 use host_sim::fuzzy::files::Format;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub struct FuzzyArguments {
@@ -75,4 +76,9 @@ pub fn execute(arguments: &FuzzyArguments) -> anyhow::Result<()> {
         Command::Surface(arguments) => surface::execute(arguments),
         Command::Tune(arguments) => tune::execute(arguments),
     }
+}
+
+/// Writes what was asked for, all or nothing. A place that cannot be written is the user's to mend.
+fn put_where_asked(files: &[(&Path, &[u8])]) -> Result<(), BadInput> {
+    put_all(files).map_err(|error| BadInput(format!("{error:#}")))
 }

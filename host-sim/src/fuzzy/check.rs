@@ -5,6 +5,7 @@
 //! fixed point on a dense [`Grid`].
 
 mod accuracy;
+mod at_once;
 mod beyond;
 mod bound;
 mod coverage;
@@ -61,6 +62,10 @@ pub struct Report {
     pub turns: Vec<Turns>,
     /// Points of the grid.
     pub points: usize,
+    /// Whether all corners of the inputs' terms are among them.
+    pub has_corners: bool,
+    /// Whether there would be more of them if each took less work.
+    pub is_limited: bool,
     /// The error of fixed point, an entry an output; `None` without fixed point.
     pub errors: Option<Vec<Errors>>,
 }
@@ -146,6 +151,8 @@ pub fn check(
         beyond: beyond(system),
         turns: turns.collect(),
         points: grid.len(),
+        has_corners: grid.has_knots,
+        is_limited: grid.is_limited,
         errors,
         dominated: seen.dominance.dominated(),
         coverage: coverage.ok_or(seen.sampled),

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::{
     CENTRED, Canvas, FROM_LEFT, FROM_RIGHT, MUTED, Panel, Point, Rect, WIDTH, document, fitted,
-    shaded, text_width, viridis,
+    printable, shaded, text_width, viridis,
 };
 use anyhow::{Result, ensure};
 use plotters::style::{Color, RGBColor, WHITE};
@@ -340,18 +340,24 @@ fn labels(variable: &Variable, panel: &Panel) -> Vec<Label> {
     let same = |a: &(f64, usize), b: &(f64, usize)| {
         (panel.at(a.0, 1.0).0 - panel.at(b.0, 1.0).0).abs() < 1.0
     };
+    let inside = |x: &f64| (panel.rect.left - 1.0..=panel.rect.right + 1.0).contains(x);
+    let blocks = places.chunk_by(same).map(|together| {
+        let (at, term) = together[0];
+        let names = together.iter();
+        let names = names.map(|&(_, index)| cut(&variable.terms[index].name, SIZE, 120.0));
+        (panel.at(at, 1.0).0, term, lines(names))
+    });
+    let blocks: Vec<(f64, usize, Vec<String>)> = blocks.filter(|(x, ..)| inside(x)).collect();
+    // Over a block of several lines its neighbours have as many rows as elsewhere.
+    let tallest = blocks.iter().map(|(.., lines)| lines.len()).max();
+    let starts = match tallest {
+        Some(lines) if lines > 1 => lines + ROWS,
+        _ => ROWS,
+    };
     let mut labels = Vec::new();
     // How far each row is written.
     let mut ends: Vec<f64> = Vec::new();
-    for together in places.chunk_by(same) {
-        let (at, term) = together[0];
-        let x = panel.at(at, 1.0).0;
-        if x < panel.rect.left - 1.0 || x > panel.rect.right + 1.0 {
-            continue;
-        }
-        let names = together.iter();
-        let names = names.map(|&(_, index)| fitted(&variable.terms[index].name, SIZE, 120.0));
-        let lines = lines(names);
+    for (x, term, lines) in blocks {
         let widths = lines.iter().map(|line| text_width(line, SIZE));
         let width = widths.fold(0.0, f64::max);
         let from = (x - width / 2.0)
@@ -360,7 +366,7 @@ fn labels(variable: &Variable, panel: &Panel) -> Vec<Label> {
         let end = |row: usize| ends.get(row).copied().unwrap_or(f64::NEG_INFINITY);
         let fits = |&row: &usize| (row..row + lines.len()).all(|row| from > end(row) + 5.0);
         // A name without room is left out rather than printed over its neighbour.
-        let Some(row) = (0..ROWS).find(fits) else {
+        let Some(row) = (0..starts).find(fits) else {
             continue;
         };
         ends.resize(ends.len().max(row + lines.len()), f64::NEG_INFINITY);
@@ -375,6 +381,24 @@ fn labels(variable: &Variable, panel: &Panel) -> Vec<Label> {
         }
     }
     labels
+}
+
+/// A name, cut in the middle if it is too wide: names that share a beginning often end differently.
+fn cut(name: &str, size: f64, width: f64) -> String {
+    let clean: Vec<char> = printable(name).chars().collect();
+    let kept = |count: usize| -> String {
+        let head = clean.iter().take(count.div_ceil(2));
+        let tail = clean.iter().skip(clean.len() - count / 2);
+        head.chain(['…'].iter()).chain(tail).collect()
+    };
+    let whole: String = clean.iter().collect();
+    if text_width(&whole, size) <= width {
+        return whole;
+    }
+    let mut counts = (0..clean.len()).rev().map(kept);
+    counts
+        .find(|text| text_width(text, size) <= width)
+        .unwrap_or_default()
 }
 
 /// Names in lines, commas between them.
@@ -503,6 +527,43 @@ mod tests {
         };
         let few = height(&drawn(&self::variables()));
         assert_eq!(height(&svg), few + ROW * (labels.len() - ROWS) as f64);
+    }
+
+    #[test]
+    fn neighbours_of_many_names_are_named_above_them() {
+        let names = [
+            "rather_long_1",
+            "rather_long_2",
+            "rather_long_3",
+            "rather_long_4",
+            "rather_long_5",
+        ];
+        let mut variables = variables();
+        let stem = |name: &str, at| TermCurve {
+            name: name.to_owned(),
+            form: Form::Stem(at),
+        };
+        variables[1].axis.range = (0.0, 10.0);
+        for neighbour in [4.6, 3.4] {
+            variables[1].terms = names.iter().map(|name| stem(name, 4.0)).collect();
+            variables[1].terms.push(stem("mild", neighbour));
+            let svg = drawn(&variables);
+            for name in names.iter().chain(&["mild"]) {
+                assert!(svg.contains(name), "{name} beside {neighbour}");
+            }
+        }
+    }
+
+    #[test]
+    fn long_names_keep_both_ends() {
+        let long = |i: usize| format!("quite_a_long_name_of_a_term_{i}");
+        let [a, b] = [11, 12].map(|i| cut(&long(i), SIZE, 120.0));
+        assert!(
+            a != b && a.starts_with("quite_") && b.ends_with("_12"),
+            "{a} {b}"
+        );
+        assert!(text_width(&a, SIZE) <= 120.0);
+        assert_eq!(cut("mild", SIZE, 120.0), "mild");
     }
 
     #[test]

@@ -8,8 +8,9 @@ mod text;
 
 use super::convert::Route;
 use super::design::Design;
+use super::put_where_asked;
 use crate::cli::run::json;
-use crate::cli::{DESIGN, not_what_is_read, number as between, print, put, whole};
+use crate::cli::{DESIGN, not_what_is_read, number as between, print, whole};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use findings::{Findings, Search};
@@ -20,7 +21,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(
     after_help = "Exit code: 0, whatever is found; 1 if something is found that --deny names, or could not be looked for, \
-or an error above --max-error; 2 if the file is no design."
+or an error above --max-error; 2 if the file is no design, or --json cannot be written."
 )]
 pub struct CheckArguments {
     #[command(flatten)]
@@ -32,8 +33,9 @@ pub struct CheckArguments {
     /// "nowhere above"; with `--route fast` that route's alone.
     #[arg(long, value_parser = between(1e-9, 100.0), value_name = "PERCENT", allow_hyphen_values = true)]
     max_error: Option<f64>,
-    /// Which part of the library is to evaluate the design as a Rust module, see `convert`: the fast one has an error of its own.
-    #[arg(long, value_enum, default_value_t = Route::Auto)]
+    /// Which part of the library is to evaluate the design as a Rust module, see `convert`: the fast one has an error of its own;
+    /// auto shows both.
+    #[arg(long, value_enum, default_value_t = Route::General)]
     route: Route,
     /// Points of the grid on which fixed point is compared with f64 and rules with each other.
     #[arg(long, default_value_t = POINTS as u64, value_parser = whole(16, 10_000_000), allow_hyphen_values = true)]
@@ -86,7 +88,7 @@ pub fn execute(arguments: &CheckArguments) -> anyhow::Result<()> {
         errors.fast_route = Some(*bound);
     }
     if let Some(file) = &arguments.json {
-        put(file, &json(&findings)?)?;
+        put_where_asked(&[(file, &json(&findings)?)])?;
     }
     print(text::all(&findings))?;
     let mut said = denied(&findings, &arguments.deny);

@@ -1,13 +1,13 @@
 //! `host-sim fuzzy convert`
 
-use super::From;
-use crate::cli::{BadInput, DESIGN, check_folder, not_what_is_read, print, put, put_all};
+use super::{From, put_where_asked};
+use crate::cli::{BadInput, DESIGN, check_folder, not_what_is_read, print};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use host_sim::fuzzy::check::bounds;
-use host_sim::fuzzy::emit::{self, Design, rust};
+use host_sim::fuzzy::emit::{self, Design, RuleBase, rust};
 use host_sim::fuzzy::files::{adapt, fcl, fll, load, writing::WriteError};
-use host_sim::fuzzy::lower::lower;
+use host_sim::fuzzy::lower::{Lowered, lower};
 use host_sim::fuzzy::model::System;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ pub struct ConvertArguments {
     /// What the target cannot say exactly becomes the nearest that it can say; each change is named. For fll and fcl.
     #[arg(long)]
     adapt: bool,
-    /// Which part of the library evaluates a Rust module.
+    /// Which part of the library evaluates a Rust module; general, unless it is said.
     #[arg(long, value_enum)]
     route: Option<Route>,
     /// What the Rust module or the C files call the controller; without it, the design's name, or its file's.
@@ -53,12 +53,13 @@ enum To {
 /// Which part of the library evaluates a design as a Rust module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Route {
-    /// The fast one where the design is what it takes.
-    Auto,
-    /// Two inputs divided between peaks, a complete table of constants: four rules an evaluation.
-    Fast,
-    /// Any design: every rule in every evaluation.
+    /// Any design: every rule in every evaluation; the same integers as in C and as the simulator's fixed point.
     General,
+    /// Two inputs divided between peaks, a complete table of constants: four rules an evaluation, quicker; integers and formats of its
+    /// own.
+    Fast,
+    /// The fast one where the design is what it takes, else the general one.
+    Auto,
 }
 
 impl Route {
@@ -170,9 +171,27 @@ fn code(arguments: &ConvertArguments, system: &System) -> anyhow::Result<()> {
     if arguments.to == To::C {
         return c(arguments, &design);
     }
-    let route = arguments.route.unwrap_or(Route::Auto).route();
+    let route = arguments.route.unwrap_or(Route::General).route();
     let text = rust::write(&design, route).map_err(|why| BadInput(unfit(&file, &why)))?;
-    written(arguments, text)
+    written(arguments, text)?;
+    if let (None, Ok(base)) = (arguments.route, design.rule_base()) {
+        eprintln!("note: {}", quicker(&lowered, &base));
+    }
+    Ok(())
+}
+
+/// That the fast route is possible, and what its outputs have.
+fn quicker(lowered: &Lowered, base: &RuleBase) -> String {
+    let outputs = lowered.tables().outputs.iter().zip(&base.tables);
+    let outputs = outputs.map(|(output, table)| {
+        let (general, fast) = (output.format.fraction, base.fraction(table));
+        format!("`{}` {fast} for {general}", output.name)
+    });
+    let outputs: Vec<String> = outputs.collect();
+    format!(
+        "--route fast is quicker and fits this design; its integers are others than C's: fractional bits are of {}",
+        outputs.join(", ")
+    )
 }
 
 /// That a design in `file` is not for the fast route.
@@ -211,10 +230,10 @@ fn c(arguments: &ConvertArguments, design: &Design<'_>) -> anyhow::Result<()> {
         std::fs::create_dir_all(out)
             .with_context(|| format!("{}: cannot be made", out.display()))?;
     }
-    put_all(&[
+    Ok(put_where_asked(&[
         (&header, files.header.as_bytes()),
         (&source, files.source.as_bytes()),
-    ])
+    ])?)
 }
 
 /// The command without folders: what it makes is the same wherever it ran.
@@ -246,7 +265,7 @@ fn said(value: impl ValueEnum) -> String {
 
 fn written(arguments: &ConvertArguments, text: String) -> anyhow::Result<()> {
     match &arguments.out {
-        Some(file) => put(file, text.as_bytes()),
+        Some(file) => Ok(put_where_asked(&[(file, text.as_bytes())])?),
         None => print(text),
     }
 }

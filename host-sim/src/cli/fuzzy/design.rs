@@ -1,6 +1,9 @@
 //! A design as the commands have it: read, and in fixed point if it has such a form.
 
+use super::convert::{Route, unfit};
 use super::{DesignArguments, From};
+use crate::cli::BadInput;
+use host_sim::fuzzy::fast::Fast;
 use host_sim::fuzzy::files::load;
 use host_sim::fuzzy::lower::{Fixed, LowerError, Lowered, lower};
 use host_sim::fuzzy::model::System;
@@ -32,6 +35,23 @@ impl Design {
         match &self.fixed {
             Ok(lowered) => lowered.open(|fixed| use_it(Some(fixed))),
             Err(_) => use_it(None),
+        }
+    }
+
+    /// What a module of the fast route computes; `None` if the route is another.
+    pub fn fast(&self, file: &DesignArguments, route: Route) -> anyhow::Result<Option<Fast>> {
+        if route == Route::General {
+            return Ok(None);
+        }
+        let file = file.file.display();
+        let fast = match &self.fixed {
+            Ok(lowered) => Fast::new(&self.system, lowered).map_err(|why| unfit(&file, &why)),
+            Err(why) => Err(format!("{file}: {why}")),
+        };
+        match fast {
+            Ok(fast) => Ok(Some(fast)),
+            Err(why) if route == Route::Fast => Err(BadInput(why).into()),
+            Err(_) => Ok(None),
         }
     }
 

@@ -1,15 +1,17 @@
 //! `host-sim fuzzy eval`
 
+use super::convert::Route;
 use super::design::Design;
 use super::named;
+use super::put_where_asked;
 use super::table::{right, table};
-use crate::cli::{BadInput, DESIGN, not_what_is_read, print, put, whole};
+use crate::cli::{BadInput, DESIGN, not_what_is_read, print, whole};
 use clap::Args;
 use comfy_table::{Cell, Table};
 use host_sim::fuzzy::check::{Grid, strength};
 use host_sim::fuzzy::describe;
 use host_sim::fuzzy::evaluate::{Evaluation, Evaluator, Exact, memberships, rules, taken};
-use host_sim::fuzzy::lower::Fixed;
+use host_sim::fuzzy::fast::Fast;
 use host_sim::fuzzy::model::System;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -27,6 +29,40 @@ pub struct EvalArguments {
     /// Where the grid's values go: inputs, then outputs in f64 and in fixed point; no value is an empty cell.
     #[arg(long, value_name = "FILE", requires = "grid")]
     csv: Option<PathBuf>,
+    /// What stands beside f64: the general fixed point, whose integers are those of C, too, or what a module of `convert --route fast`
+    /// computes.
+    #[arg(long, value_enum, default_value_t = Route::General)]
+    route: Route,
+}
+
+/// What stands beside `f64`.
+struct Beside<'a> {
+    /// `None` without a fixed point.
+    evaluator: Option<&'a dyn Evaluator>,
+    /// What its columns are called, in tables and in files.
+    names: [&'static str; 2],
+    /// What can be told apart of each output.
+    resolutions: Vec<f64>,
+}
+
+/// Lends the design's fixed point or its fast route.
+fn beside<R>(design: &Design, fast: Option<&Fast>, use_it: impl FnOnce(Beside<'_>) -> R) -> R {
+    let outputs = 0..design.system.outputs.len();
+    if let Some(fast) = fast {
+        let step = |output| fast.format(output).map_or(0.0, |format| format.value(1));
+        return use_it(Beside {
+            evaluator: Some(fast),
+            names: ["fast route", "fast"],
+            resolutions: outputs.map(step).collect(),
+        });
+    }
+    design.opened(|fixed| {
+        use_it(Beside {
+            evaluator: fixed.as_ref().map(|fixed| fixed as &dyn Evaluator),
+            names: ["fixed point", "fixed"],
+            resolutions: outputs.map(|output| design.resolution(output)).collect(),
+        })
+    })
 }
 
 /// Most rows of a grid.
@@ -38,8 +74,11 @@ pub fn execute(arguments: &EvalArguments) -> anyhow::Result<()> {
     }
     let design = Design::load(&arguments.design)?;
     let values = named::values(&design.system, "--input", &arguments.inputs)?;
+    let fast = design.fast(&arguments.design, arguments.route)?;
     if let (Some(grid), Some(csv)) = (arguments.grid, &arguments.csv) {
-        return surface(&design, &values, grid as usize, csv);
+        return beside(&design, fast.as_ref(), |beside| {
+            surface(&design, &beside, &values, grid as usize, csv)
+        });
     }
     let missing: Vec<&str> = design
         .system
@@ -57,13 +96,15 @@ pub fn execute(arguments: &EvalArguments) -> anyhow::Result<()> {
         return Err(BadInput(what).into());
     }
     let point: Vec<f64> = values.into_iter().flatten().collect();
-    at_point(&design, &point)
+    beside(&design, fast.as_ref(), |beside| {
+        at_point(&design, &beside, &point)
+    })
 }
 
-fn at_point(design: &Design, point: &[f64]) -> anyhow::Result<()> {
+fn at_point(design: &Design, beside: &Beside<'_>, point: &[f64]) -> anyhow::Result<()> {
     let system = &design.system;
     let exact = Exact::new(system).evaluate(point);
-    let fixed = design.opened(|fixed| fixed.map(|fixed| fixed.evaluate(point)));
+    let fixed = beside.evaluator.map(|fixed| fixed.evaluate(point));
     print(format_args!(
         "{} at {}\n",
         design.title(),
@@ -74,9 +115,12 @@ fn at_point(design: &Design, point: &[f64]) -> anyhow::Result<()> {
     print(outside(system, &values))?;
     print(format_args!(
         "{}\n",
-        outputs(design, point, &exact, fixed.as_ref())
+        outputs(design, beside, point, &exact, fixed.as_ref())
     ))?;
-    print(format_args!("{}\n", fired(design, &exact, fixed.as_ref())))?;
+    print(format_args!(
+        "{}\n",
+        fired(design, beside, &exact, fixed.as_ref())
+    ))?;
     print(design.note())
 }
 
@@ -128,14 +172,15 @@ fn outside(system: &System, values: &[Option<f64>]) -> String {
 
 fn outputs(
     design: &Design,
+    beside: &Beside<'_>,
     point: &[f64],
     exact: &Evaluation,
     fixed: Option<&Evaluation>,
 ) -> Table {
-    let mut table = table(["output", "f64", "fixed point", "difference"]);
+    let mut table = table(["output", "f64", beside.names[0], "difference"]);
     let concluded = concluded(&design.system, point);
     for (index, output) in design.system.outputs.iter().enumerate() {
-        let resolution = design.resolution(index);
+        let resolution = beside.resolutions[index];
         let fires = |of: &Evaluation| strength(&design.system, index, of) > 0.0;
         let why = match fires(exact) {
             true => "the concluded sets meet no sample",
@@ -180,8 +225,13 @@ fn concluded(system: &System, point: &[f64]) -> Vec<bool> {
 }
 
 /// Every rule that fires, in `f64` or in fixed point.
-fn fired(design: &Design, exact: &Evaluation, fixed: Option<&Evaluation>) -> Table {
-    let mut table = table(["rule", "degree f64", "fixed point", "reads"]);
+fn fired(
+    design: &Design,
+    beside: &Beside<'_>,
+    exact: &Evaluation,
+    fixed: Option<&Evaluation>,
+) -> Table {
+    let mut table = table(["rule", "degree f64", beside.names[0], "reads"]);
     for (index, (_, rule)) in rules(&design.system).enumerate() {
         let of = |evaluation: &Evaluation| evaluation.rules.get(index).copied().unwrap_or(0.0);
         let (exact, fixed) = (of(exact), fixed.map(of));
@@ -206,7 +256,13 @@ fn degree(degree: f64) -> String {
     }
 }
 
-fn surface(design: &Design, held: &[Option<f64>], each: usize, csv: &Path) -> anyhow::Result<()> {
+fn surface(
+    design: &Design,
+    beside: &Beside<'_>,
+    held: &[Option<f64>],
+    each: usize,
+    csv: &Path,
+) -> anyhow::Result<()> {
     let free = held.iter().filter(|value| value.is_none()).count() as u32;
     let rows = each.checked_pow(free).filter(|rows| *rows <= MOST_ROWS);
     if rows.is_none() {
@@ -221,19 +277,22 @@ fn surface(design: &Design, held: &[Option<f64>], each: usize, csv: &Path) -> an
             *axis = vec![*value];
         }
     }
-    let bytes = design.opened(|fixed| table_of(&design.system, fixed.as_ref(), &grid))?;
-    put(csv, &bytes)?;
+    let bytes = table_of(&design.system, beside, &grid)?;
+    put_where_asked(&[(csv, &bytes)])?;
     print(format_args!("{}: rows: {}\n", csv.display(), grid.len()))?;
     print(outside(&design.system, held))?;
     print(design.note())
 }
 
-fn table_of(system: &System, fixed: Option<&Fixed<'_>>, grid: &Grid) -> anyhow::Result<Vec<u8>> {
+fn table_of(system: &System, beside: &Beside<'_>, grid: &Grid) -> anyhow::Result<Vec<u8>> {
+    let fixed = beside.evaluator;
     let exact = Exact::new(system);
     let mut writer = csv::Writer::from_writer(Vec::new());
     let inputs = system.inputs.iter().map(|input| input.name.clone());
     let outputs = system.outputs.iter().map(|output| output.name.clone());
-    let in_fixed = outputs.clone().map(|name| format!("{name} (fixed)"));
+    let in_fixed = outputs
+        .clone()
+        .map(|name| format!("{name} ({})", beside.names[1]));
     let in_fixed = in_fixed.filter(|_| fixed.is_some());
     writer.write_record(inputs.chain(outputs).chain(in_fixed))?;
     let text = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());

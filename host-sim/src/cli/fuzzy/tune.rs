@@ -103,7 +103,8 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         let file = arguments.design.file.display();
         return Err(BadInput(format!("{file}: no fixed point: {why}")).into());
     }
-    let written = Written::of(&arguments.design, system, arguments.adapt);
+    let drives = !arguments.scenario.is_empty();
+    let written = Written::of(&arguments.design, system, arguments.adapt, drives);
     let (_, renamed, _) = written
         .text(system)
         .map_err(|error| refused(&arguments.design.file, &error, arguments.adapt))?;
@@ -118,7 +119,8 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     if movable.is_empty() {
         let mut free = Selection::default();
         goal.hold(system, &mut free);
-        return Err(what_could(system, &free, &arguments.only, &arguments.fix).into());
+        let asked = [&arguments.only[..], &arguments.fix[..]];
+        return Err(what_could(system, &free, asked, drives).into());
     }
     let question = Question {
         design: Question::fingerprint(&format!(

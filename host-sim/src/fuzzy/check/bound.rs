@@ -69,7 +69,7 @@ pub fn bounds(system: &System, lowered: &Lowered) -> Bounds {
             bounds,
         }
     };
-    let grid = Grid::new(system, FIRST_BOXES);
+    let grid = Grid::boxes(system, FIRST_BOXES);
     let mut boxes: Vec<Looked> = regions(&grid).into_par_iter().map(looked_at).collect();
     let mut left = (MOST_WORK / cost(system)).min(MOST_BOXES);
     loop {

@@ -3,8 +3,8 @@
 use super::words::count;
 use crate::fuzzy::lower::{Defuzzifier, Lowered, Number};
 use crate::fuzzy::model::System;
-use fuzzypilot::fuzzy::MAX_TERMS;
 use fuzzypilot::fuzzy::system::{Degree, LIMIT, Literal, Merge, Norm, Piece};
+use fuzzypilot::fuzzy::{MAX_TERMS, Twin};
 
 /// Fractional bits that the route takes its inputs in.
 pub const FRACTION: i32 = 16;
@@ -16,6 +16,8 @@ pub struct RuleBase {
     pub axes: [Axis; 2],
     /// The outputs.
     pub tables: Vec<Table>,
+    /// Each rule's row and column, in the design's order.
+    pub rules: Vec<[usize; 2]>,
 }
 
 /// An input, divided between peaks.
@@ -56,6 +58,14 @@ impl RuleBase {
             gaps.iter().all(|gap| *gap == gaps[0])
         };
         self.tables.len() == 2 && self.axes.iter().all(even)
+    }
+
+    /// Fractional bits of an output as it comes out.
+    pub fn fraction(&self, table: &Table) -> i32 {
+        match self.is_twin() {
+            true => table.fraction + Twin::<2, 2>::EXTRA_BITS as i32,
+            false => table.fraction,
+        }
     }
 }
 
@@ -129,6 +139,12 @@ pub fn recognise(system: &System, lowered: &Lowered) -> Result<RuleBase, String>
     let outputs = (0..tables.outputs.len()).map(|o| table(system, lowered, o, &axes));
     Ok(RuleBase {
         tables: outputs.collect::<Result<_, _>>()?,
+        rules: tables
+            .blocks
+            .iter()
+            .flat_map(|block| &block.rules)
+            .filter_map(|rule| place(&axes, &rule.when))
+            .collect(),
         axes,
     })
 }
@@ -321,16 +337,12 @@ fn cells(lowered: &Lowered, o: usize, axes: &[Axis; 2]) -> Result<Vec<Vec<usize>
         if rule.weight != Degree::ONE {
             return Err(format!("rules weigh 1, and {this} weighs less"));
         }
-        let (Literal::Is(0, row), Literal::Is(1, column)) = pair(&rule.when) else {
+        let Some([row, column]) = place(axes, &rule.when) else {
             return Err(format!(
                 "a rule asks both inputs for one term each, and {this} does not"
             ));
         };
-        let place =
-            |axis: &Axis, term: u8| axis.terms.iter().position(|&of| of == usize::from(term));
-        let cell = place(&axes[0], row)
-            .and_then(|row| cells.get_mut(row))
-            .and_then(|cells| cells.get_mut(place(&axes[1], column)?));
+        let cell = cells.get_mut(row).and_then(|cells| cells.get_mut(column));
         match cell {
             Some(cell @ None) => *cell = Some(usize::from(term)),
             _ => {
@@ -347,6 +359,15 @@ fn cells(lowered: &Lowered, o: usize, axes: &[Axis; 2]) -> Result<Vec<Vec<usize>
         let all = count(axes[0].terms.len() * axes[1].terms.len(), "pair");
         format!("every one of {all} of terms has a rule, and for `{name}` some are missing")
     })
+}
+
+/// A rule's row and column; `None` if it asks something else than both inputs for one term each.
+fn place(axes: &[Axis; 2], when: &[Vec<Literal>]) -> Option<[usize; 2]> {
+    let (Literal::Is(0, row), Literal::Is(1, column)) = pair(when) else {
+        return None;
+    };
+    let place = |axis: &Axis, term: u8| axis.terms.iter().position(|&of| of == usize::from(term));
+    Some([place(&axes[0], row)?, place(&axes[1], column)?])
 }
 
 /// What a rule asks, the first input first, if it asks twice.

@@ -13,13 +13,13 @@ use super::names::{Identifiers, Taken};
 /// Which part of the library evaluates it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Route {
-    /// [`Route::Fast`] where the design is what it takes, else [`Route::General`].
+    /// `fuzzypilot::fuzzy::system`: every rule, the same integers as the simulator's fixed point and as C.
     #[default]
-    Auto,
-    /// The tables of `fuzzypilot::fuzzy`: four rules an evaluation.
-    Fast,
-    /// `fuzzypilot::fuzzy::system`: every rule, the same integers as the simulator's fixed point.
     General,
+    /// The tables of `fuzzypilot::fuzzy`: four rules an evaluation, and integers of their own.
+    Fast,
+    /// [`Route::Fast`] where the design is what it takes, else [`Route::General`].
+    Auto,
 }
 
 /// Writes the module.

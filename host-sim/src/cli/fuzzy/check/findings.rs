@@ -19,6 +19,10 @@ pub struct Findings {
     /// Points of the grid, and how many were asked for: costly designs get fewer.
     pub points: usize,
     pub points_asked: usize,
+    /// Whether they are fewer for the work that each takes.
+    pub points_limited: bool,
+    /// Whether all corners of the inputs' terms are on the grid.
+    pub corners: bool,
     pub gaps: Vec<Gap>,
     /// Where an input has no term.
     pub without_terms: Vec<Side>,
@@ -200,6 +204,8 @@ impl Findings {
             },
             points: report.points,
             points_asked: report.points,
+            points_limited: report.is_limited,
+            corners: report.has_corners,
             gaps: match &report.coverage {
                 Ok(coverage) => coverage.gaps.iter().map(|gap| named.gap(gap)).collect(),
                 Err(sampled) => named.sampled_gaps(sampled, report.points),

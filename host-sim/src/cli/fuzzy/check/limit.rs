@@ -3,39 +3,25 @@
 use super::CheckArguments;
 use super::findings::{Findings, rounded};
 use super::text::{FAST, SHOWN_STRENGTHS, share};
-use crate::cli::BadInput;
-use crate::cli::fuzzy::convert::{Route, unfit};
+use crate::cli::fuzzy::convert::Route;
 use crate::cli::fuzzy::design::Design;
 use host_sim::fuzzy::check::Report;
 use host_sim::fuzzy::describe::{given_point, number};
-use host_sim::fuzzy::emit::{self, rust};
+use host_sim::fuzzy::emit::rust;
 use host_sim::fuzzy::model::System;
 
 /// What a module of the fast route may be off, an entry an output; `None` if the design is evaluated by the general one.
 pub fn fast(design: &Design, arguments: &CheckArguments) -> anyhow::Result<Option<Vec<f64>>> {
-    let (Ok(lowered), Route::Auto | Route::Fast) = (&design.fixed, arguments.route) else {
+    if design.fixed.is_err() {
         return Ok(None);
-    };
-    let emitted = emit::Design {
-        system: &design.system,
-        lowered,
-        name: &design.stem,
-        command: "",
-        bounds: None,
-    };
-    match (emitted.rule_base(), arguments.route) {
-        (Ok(base), _) => {
-            let outputs = 0..base.tables.len();
-            Ok(Some(
-                outputs.map(|o| rust::output_error(&base, o)).collect(),
-            ))
-        }
-        (Err(why), Route::Fast) => {
-            let file = arguments.design.file.display();
-            Err(BadInput(unfit(&file, &why)).into())
-        }
-        (Err(_), _) => Ok(None),
     }
+    let fast = design.fast(&arguments.design, arguments.route)?;
+    Ok(fast.map(|fast| {
+        let outputs = 0..fast.base().tables.len();
+        outputs
+            .map(|o| rust::output_error(fast.base(), o))
+            .collect()
+    }))
 }
 
 /// What may be off by more than `most` per cent of its output's range. With [`Route::Fast`] the fast route's bound counts alone:

@@ -255,7 +255,7 @@ fn errors(findings: &Findings) -> String {
     {
         true => {
             "\"fast route\" is what a Rust module may be off that the library's tables of four rules evaluate, as `convert \
-             --to rust`\nmakes it of this design; --route general is for the other one.\n"
+             --to rust\n--route fast` makes it of this design.\n"
         }
         false => "",
     };
@@ -267,14 +267,19 @@ fn errors(findings: &Findings) -> String {
     )
 }
 
-/// How many points were asked, of how many.
+/// How many points were looked at, of how many; why not more, and what is not among them.
 fn grid(findings: &Findings) -> String {
     let (points, asked) = (findings.points, findings.points_asked);
-    let thinner = match points < asked / 2 {
+    let thinner = match findings.points_limited {
         true => "; each takes long, with so many rules and samples",
         false => "",
     };
-    format!("a grid of {points} points (of {asked} that were asked for{thinner})")
+    let corners = match (findings.corners, findings.points_limited) {
+        (true, _) => "",
+        (false, true) => "; too few for the terms' corners, which are left out",
+        (false, false) => "; too few for the terms' corners, which are left out: --points for more",
+    };
+    format!("a grid of {points} points (of {asked} that were asked for{thinner}{corners})")
 }
 
 fn at_line(line: usize, text: &str) -> String {

@@ -8,6 +8,7 @@ use crate::cli::run::json;
 use anyhow::{Context, anyhow, bail};
 use host_sim::fuzzy::check::bounds;
 use host_sim::fuzzy::emit::{self, rust};
+use host_sim::fuzzy::fast::Fast;
 use host_sim::fuzzy::files::writing::WriteError;
 use host_sim::fuzzy::files::{Format, adapt, fcl, fll, parse};
 use host_sim::fuzzy::lower::lower;
@@ -31,12 +32,14 @@ pub struct Written {
     language: Language,
     /// Whether names that the language has not become the nearest that it has.
     adapt: bool,
+    /// Whether the robot is to drive with it: then its module is of the fast route where the design is what that takes.
+    drives: bool,
 }
 
 impl Written {
     /// For a design: its own format; of MATLAB's, which is not written, FCL where a centroid is sampled from end to end, for
     /// FLL cannot say that, and FLL otherwise, for FCL has no linear terms. No design has both.
-    pub fn of(design: &DesignArguments, system: &System, adapt: bool) -> Self {
+    pub fn of(design: &DesignArguments, system: &System, adapt: bool, drives: bool) -> Self {
         let ends = |output: &Output| {
             let sampling = match output.defuzzifier {
                 Defuzzifier::Centroid { sampling, .. } => Some(sampling),
@@ -50,7 +53,11 @@ impl Written {
             Some(Format::Fis) if system.outputs.iter().any(ends) => Language::Fcl,
             _ => Language::Fll,
         };
-        Self { language, adapt }
+        Self {
+            language,
+            adapt,
+            drives,
+        }
     }
 
     fn format(&self) -> Format {
@@ -118,8 +125,8 @@ impl Written {
         }
         let lowered = lower(&said).with_context(|| format!("{name}: refused by the checks"))?;
         // As convert makes it of the design beside it.
-        let module = rust::write(
-            &emit::Design {
+        let module = |route, option| {
+            let design = emit::Design {
                 system: &said,
                 lowered: &lowered,
                 name: if said.name.is_empty() {
@@ -127,12 +134,17 @@ impl Written {
                 } else {
                     &said.name
                 },
-                command: &format!("host-sim fuzzy convert {name} --to rust"),
+                command: &format!("host-sim fuzzy convert {name} --to rust{option}"),
                 bounds: Some(&bounds(&said, &lowered)),
-            },
-            rust::Route::Auto,
-        )
-        .map_err(|why| anyhow!("{name}: {why}"))?;
+            };
+            rust::write(&design, route)
+        };
+        let fast = self.drives && Fast::new(&said, &lowered).is_ok();
+        let module = match fast {
+            true => module(rust::Route::Fast, " --route fast"),
+            false => module(rust::Route::General, ""),
+        };
+        let module = module.map_err(|why| anyhow!("{name}: {why}"))?;
         let mut variables = picture::variables(&design.system);
         let mut after = picture::variables(tuned);
         for variable in &mut variables {

@@ -44,6 +44,12 @@ pub fn named(
             text.match_indices('.')
                 .map(|(at, _)| (&text[..at], Some(&text[at + 1..]))),
         );
+        if text.trim().is_empty() {
+            return Err(BadInput(format!(
+                "{flag}: found an empty name; allowed are {}, alone or with `.` and one of their terms",
+                joined(known.iter().map(|of| of.name.to_owned()))
+            )));
+        }
         let mut nearest = None;
         for (name, term) in splits {
             let Some(of) = known.iter().find(|of| of.name == name) else {
@@ -76,7 +82,13 @@ pub fn named(
 }
 
 /// Why nothing moves: what was asked for, and what could move where nothing but `free` is held.
-pub fn what_could(system: &System, free: &Selection, only: &[String], fix: &[String]) -> BadInput {
+/// `drives` if the robot is what it is judged by.
+pub fn what_could(
+    system: &System,
+    free: &Selection,
+    [only, fix]: [&[String]; 2],
+    drives: bool,
+) -> BadInput {
     let moves = |variable, term| {
         let selection = Selection {
             only: vec![(variable, term)],
@@ -109,8 +121,12 @@ pub fn what_could(system: &System, free: &Selection, only: &[String], fix: &[Str
         true => "nothing of this design can".to_owned(),
         false => format!("what can is {could}"),
     };
+    let drives = match drives {
+        true => ", and with --scenario all inputs but d",
+        false => "",
+    };
     BadInput(format!(
-        "{asked}: no number can move (knots at the ends of a range or beyond stay, and with --scenario all inputs but d); {could}"
+        "{asked}: no number can move (knots at the ends of a range or beyond stay{drives}); {could}"
     ))
 }
 

@@ -10,7 +10,6 @@ use super::head::{Signal, head, signals};
 use super::{identifiers, shout};
 use crate::fuzzy::describe::{self, number};
 use crate::fuzzy::evaluate::rules;
-use fuzzypilot::fuzzy::Twin;
 use heck::ToUpperCamelCase;
 use std::fmt::Write;
 
@@ -78,14 +77,6 @@ impl<'a> Writer<'a> {
         ]
     }
 
-    /// Fractional bits of an output as it comes out.
-    fn fraction(&self, table: &Table) -> i32 {
-        match self.twin {
-            true => table.fraction + Twin::<2, 2>::EXTRA_BITS as i32,
-            false => table.fraction,
-        }
-    }
-
     fn signals(&self) -> Vec<Signal<'a>> {
         let tables = self.design.lowered.tables();
         let inputs = tables
@@ -106,13 +97,13 @@ impl<'a> Writer<'a> {
             .zip(&self.names.outputs)
             .zip(&self.base.tables);
         let outputs = outputs.map(|((output, names), table)| {
-            let shift = self.fraction(table) - table.fraction;
+            let shift = self.base.fraction(table) - table.fraction;
             let ends = [table.peaks.first(), table.peaks.last()];
             Signal {
                 kind: "output",
                 name: &output.name,
                 identifier: &names.name,
-                fraction: self.fraction(table),
+                fraction: self.base.fraction(table),
                 range: ends.map(|end| end.copied().unwrap_or(0) << shift),
                 beyond: "never".to_owned(),
             }

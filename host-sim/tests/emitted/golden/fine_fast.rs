@@ -1,6 +1,6 @@
 //! The fuzzy controller `fine`: 2 inputs, 2 outputs, 25 rules.
 //!
-//! Made by `host-sim fuzzy convert fine.fll --to rust`:
+//! Made by `host-sim fuzzy convert fine.fll --to rust --route fast`:
 //! change the design and make it again rather than this file. It needs the crates `fuzzypilot` and `fixed`.
 //!
 //! Route: fast, `fuzzypilot::fuzzy::TwinTable`: two outputs over evenly spaced terms at once. Only the four
