@@ -452,7 +452,8 @@ mod tests {
         search.begin((256 + 1000, 264));
         let mut budget = 1000;
         assert!(search.spread(&[FREE; CELLS], &mut budget));
-        assert!(budget > 750, "{budget} left");
+        // Without the direction it takes them all.
+        assert!(budget > 650, "{budget} left");
     }
 
     #[test]

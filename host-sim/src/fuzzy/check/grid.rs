@@ -1,6 +1,7 @@
 //! The points at which a system is looked at when pieces cannot tell: a dense grid with every knot in it, unless the work forbids
 //! that: then with even values alone, and it says so.
 
+use super::MOST_VALUES;
 use super::at_once::at_once;
 use crate::fuzzy::evaluate::rules;
 use crate::fuzzy::model::{Defuzzifier, Input, Merge, Shape, System};
@@ -10,6 +11,8 @@ pub const POINTS: usize = 100_000;
 /// Degrees and samples that a grid may cost before it gets thinner, some seconds; and what it may have at least all the same.
 const MOST_WORK: usize = 4_000_000_000;
 const LEAST_POINTS: usize = 2_000;
+/// Points that the knots may take beyond those asked for.
+const MOST_FOR_KNOTS: usize = 10 * POINTS;
 /// With fewer even values an input than this, it matters how many of them fall on knots.
 const LEAST_EACH: usize = 5;
 /// How far beside a jump it is looked, of the range: some steps of fixed point.
@@ -28,8 +31,8 @@ pub struct Grid {
 
 impl Grid {
     /// At most about `points` points, evenly from end to end of each range and at the knots of the terms, where the greatest
-    /// errors lie. Costly systems get fewer; of [`POINTS`] or more there may be more than were asked for, if the knots need them and
-    /// the work allows it. Where there is no room for the knots they are left out.
+    /// errors lie. Costly systems get fewer. Of [`POINTS`] or more there may be more than were asked for, up to a million, if the knots
+    /// need them and the work and the values that can be kept allow it. Where there is no room for the knots they are left out.
     pub fn new(system: &System, points: usize) -> Self {
         let asked = points;
         let most = (MOST_WORK / cost(system)).max(LEAST_POINTS);
@@ -37,13 +40,18 @@ impl Grid {
         let knots: Vec<Vec<f64>> = system.inputs.iter().map(knots).collect();
         let mut each = even_values(&knots, points);
         if each < LEAST_EACH {
-            let room = if asked >= POINTS { most } else { points };
+            let kept = MOST_VALUES / system.outputs.len().max(1);
+            let room = match asked >= POINTS {
+                true => most.min(MOST_FOR_KNOTS).min(kept).max(points),
+                false => points,
+            };
             let fits = |each, room| size(&with_knots(system, &knots, each)) <= room;
             each = each.max(2);
             if !fits(each, room) {
                 let all = (points as f64).powf(1.0 / system.inputs.len().max(1) as f64);
                 return Self {
-                    is_limited: most < asked,
+                    // Or else more points would be room enough.
+                    is_limited: most < asked || !fits(each, most),
                     ..Self::even(system, all as usize)
                 };
             }
@@ -173,8 +181,8 @@ fn knots(input: &Input) -> Vec<f64> {
     knots
 }
 
-/// What a point costs, about: degrees of rules and samples of sets, in `f64` and in fixed point, and comparing the rules with each
-/// other. Of a centroid only the rules that fire cost samples and, where the largest counts, of each set only the strongest, cut off
+/// What a point costs, about: degrees of terms and of rules and samples of sets, in `f64` and in fixed point, and comparing the
+/// rules with each other. Of a centroid only the rules that fire cost samples and, where the largest counts, of each set only the strongest, cut off
 /// or scaled.
 fn cost(system: &System) -> usize {
     let count = rules(system).count();
@@ -194,7 +202,9 @@ fn cost(system: &System) -> usize {
             }
         }
     });
-    (count * 24 + outputs.sum::<usize>()).max(1)
+    let terms = system.inputs.iter().flat_map(|input| &input.terms);
+    let degrees = terms.map(|term| 64 + 16 * term.shape.knots().len());
+    (degrees.sum::<usize>() + count * 24 + outputs.sum::<usize>()).max(1)
 }
 
 #[cfg(test)]
@@ -269,6 +279,40 @@ mod tests {
         // So few were asked for: it is not for the work.
         let grid = Grid::new(&self::crowd(4, 10, Merge::Max), 200);
         assert!(!grid.is_limited && !grid.has_knots && grid.len() < 200);
+    }
+
+    #[test]
+    fn the_knots_take_a_million_points_at_most_and_no_more_than_can_be_kept() {
+        // Few rules about many terms.
+        let mut many = crowd(4, 10, Merge::Max);
+        many.blocks[0].rules.truncate(8);
+        let term = many.inputs[0].terms[0].clone();
+        let at = |peak: f64| crate::fuzzy::model::Term {
+            shape: Shape::Triangle {
+                left: peak - 0.1,
+                peak,
+                right: peak + 0.1,
+            },
+            ..term.clone()
+        };
+        let with = |terms: u8, outputs: usize| {
+            let mut many = many.clone();
+            for input in &mut many.inputs {
+                input.terms = (0..terms)
+                    .map(|i| at(7.0 * f64::from(i) / f64::from(terms)))
+                    .collect();
+            }
+            many.outputs = vec![many.outputs[0].clone(); outputs];
+            many
+        };
+        let fits = Grid::new(&with(8, 1), POINTS);
+        assert!(fits.has_knots && (POINTS..=MOST_FOR_KNOTS).contains(&fits.len()));
+        for (terms, outputs) in [(64, 1), (20, 1), (8, 400)] {
+            let grid = Grid::new(&with(terms, outputs), POINTS);
+            assert!(!grid.has_knots && grid.len() <= POINTS, "{}", grid.len());
+        }
+        // Where not even the most points were enough, it is for the work.
+        assert!(Grid::new(&with(64, 1), POINTS).is_limited);
     }
 
     #[test]
