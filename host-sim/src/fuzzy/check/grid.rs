@@ -202,9 +202,8 @@ fn cost(system: &System) -> usize {
             }
         }
     });
-    let terms = system.inputs.iter().flat_map(|input| &input.terms);
-    let degrees = terms.map(|term| 64 + 16 * term.shape.knots().len());
-    (degrees.sum::<usize>() + count * 24 + outputs.sum::<usize>()).max(1)
+    let terms: usize = system.inputs.iter().map(|input| input.terms.len()).sum();
+    (terms * 16 + count * 24 + outputs.sum::<usize>()).max(1)
 }
 
 #[cfg(test)]
