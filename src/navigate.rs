@@ -45,7 +45,7 @@ pub use health::{Health, HealthParams};
 pub use memory::{CAPACITY, Memory, MemoryParams};
 pub use near::{MAX_NEAR, Motion, Near};
 pub use params::{NavigatorParams, Setup};
-pub use polar::{MapParams, PolarMap, SECTORS};
+pub use polar::{Free, MapParams, PolarMap, SECTORS};
 pub use sensors::{Echo, Echoes, Eyes, RangeSet, SENSORS};
 pub use stage::{Probe, Stage};
 pub use steer::SteerParams;
@@ -60,6 +60,7 @@ use crate::ports::RangeReading;
 use crate::signals::{Guidance, Twist};
 use crate::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond};
 use heading::{Wanted, choose};
+use memory::insertion_range;
 
 /// Where to go.
 #[derive(Clone, Copy, Debug)]
@@ -120,8 +121,9 @@ impl<const N: usize> Default for Navigator<N> {
     }
 }
 
-/// How far from the middle of the body points are looked at.
+/// How far from the middle of the body points are looked at, at most, and how much farther than new ones are taken up.
 const LOOK: Steps = Steps::lit("2");
+const BEYOND: Steps = Steps::lit("0.45");
 
 impl<const N: usize> Navigator<N> {
     /// A robot at rest that has seen nothing.
@@ -195,6 +197,7 @@ impl<const N: usize> Navigator<N> {
             &self.echoes,
             pose,
             self.last.linear,
+            |at| self.field.notice(at),
         );
         let dead = self.health.dead(&p.health);
         for (index, eye) in (0..32usize).zip(setup.eyes.as_slice()) {
@@ -208,32 +211,42 @@ impl<const N: usize> Navigator<N> {
         // What is decided now acts after the latency; until then the last command does.
         let moved = Motion::of(setup.brakes.mean(self.before, self.last), p.latency);
         let ahead = moved.from(pose);
+        let look = self.look(setup);
         self.near
-            .collect(self.memory.points(), outline, moved, LOOK);
+            .collect(self.memory.seen_from(moved, look), outline);
         probe.mark(Stage::Near);
-        self.map.draw(&p.map, &self.near, outline);
+        self.map
+            .draw(&p.map, &self.near, outline, Steps::of(p.heading.least));
         probe.mark(Stage::Map);
 
         let course = self.course(setup, pose, ahead, task);
         probe.mark(Stage::Course);
-        let heading = choose(
-            &p.heading,
-            &setup.weights,
-            &self.map,
-            &Wanted {
-                direction: course.direction,
-                last: self.chosen - ahead.heading,
-                distance: course.distance,
-                look: Steps::of(p.map.look),
-            },
-        );
+        // Who follows a free path needs none.
+        let follows = course.free && self.supervisor.follows();
+        let heading = if follows {
+            None
+        } else {
+            choose(
+                &p.heading,
+                &setup.weights,
+                &mut self.map,
+                &self.near,
+                &Wanted {
+                    direction: course.direction,
+                    last: self.chosen - ahead.heading,
+                    distance: course.distance,
+                    look: Steps::of(p.map.look),
+                },
+            )
+        };
         probe.mark(Stage::Heading);
         let decided = self.supervisor.decide(
             &p.supervisor,
             &supervisor::Situation {
                 path_free: course.free,
                 path_clear: course.clear,
-                admissible: heading.is_some() && !self.must_back_out(p, pose.at, &course),
+                admissible: (follows || heading.is_some())
+                    && !self.must_back_out(p, pose.at, &course),
                 last: self.last,
                 at: pose.at,
                 to_go: course.to_go,
@@ -270,6 +283,11 @@ impl<const N: usize> Navigator<N> {
         }
     }
 
+    /// How far from the middle of the body points matter.
+    fn look(&self, setup: &Setup<N>) -> Steps {
+        (insertion_range(&setup.params.memory, self.last.linear) + BEYOND).min(LOOK)
+    }
+
     /// Where to head: along the path while it is free, else by the guide field.
     fn course(&mut self, setup: &Setup<N>, pose: Pose, ahead: Pose, task: Task<'_>) -> Course {
         let p = &setup.params;
@@ -281,7 +299,7 @@ impl<const N: usize> Navigator<N> {
         if course.guided {
             self.field
                 .work(&p.field, &setup.costs, &self.memory, pose.at, course.carrot);
-            head_for = self.field.guide().unwrap_or(course.carrot);
+            head_for = self.field.guide(&p.field, pose.at).unwrap_or(course.carrot);
         } else {
             self.field.reset();
         }

@@ -3,9 +3,7 @@
 
 use fixed::types::{I8F24, I16F16};
 use fuzzypilot::geometry::Point;
-use fuzzypilot::navigate::{
-    BarrierParams, Brakes, Footprint, Guarded, Motion, Near, Steps, Vector, gate,
-};
+use fuzzypilot::navigate::{BarrierParams, Brakes, Footprint, Guarded, Motion, Near, Vector, gate};
 use fuzzypilot::signals::Twist;
 use fuzzypilot::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds};
 use proptest::prelude::*;
@@ -109,7 +107,7 @@ fn guarded(robot: &Robot, before: [f64; 2], points: &[[f64; 2]], wanted: [f64; 2
     let driven = twist(robot.last);
     let moved = Motion::of(brakes().mean(twist(before), driven), brakes().period);
     let mut near = Near::new();
-    near.collect(points.iter().map(vector), &outline, moved, Steps::lit("2"));
+    near.collect(points.iter().map(|p| moved.sees(vector(p))), &outline);
     let stepped = brakes().toward(driven, twist(wanted));
     gate(&params, &near, &outline, brakes(), driven, stepped)
 }

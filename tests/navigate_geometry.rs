@@ -3,7 +3,7 @@
 
 use fixed::types::I16F16;
 use fuzzypilot::geometry::Point;
-use fuzzypilot::navigate::{Footprint, MapParams, Motion, Near, PolarMap, SECTORS, Steps, Vector};
+use fuzzypilot::navigate::{Footprint, MapParams, Near, PolarMap, SECTORS, Steps, Vector};
 use fuzzypilot::units::Metres;
 use proptest::prelude::*;
 
@@ -101,9 +101,9 @@ proptest! {
         let body = [[-0.2, -0.215], [0.3, -0.215], [0.3, 0.215], [-0.2, 0.215]];
         let points: Vec<_> = points.into_iter().map(|(x, y)| [x, y]).collect();
         let mut near = Near::new();
-        near.collect(points.iter().map(|p| vector(*p)), &outline, Motion::default(), Steps::lit("2"));
+        near.collect(points.iter().map(|p| vector(*p)), &outline);
         let mut map = PolarMap::new();
-        map.draw(&params, &near, &outline);
+        map.draw(&params, &near, &outline, Steps::ZERO);
         for sector in 0..SECTORS {
             let (sin, cos) = (sector as f64 / SECTORS as f64 * std::f64::consts::TAU).sin_cos();
             let free = |half_width: f64, front: f64| {
@@ -115,7 +115,8 @@ proptest! {
             };
             // A corridor a little wider and one a little narrower bound what rounding can do.
             let tight = 5.0 * STEP;
-            for (got, half_width) in [(f(map.hard(sector)), 0.235), (f(map.soft(sector)), 0.275)] {
+            let got = map.free(&near, sector);
+            for (got, half_width) in [(f(got.hard), 0.235), (f(got.soft), 0.275)] {
                 prop_assert!(got <= free(half_width - tight, 0.3 + tight) + tight, "sector {sector}: {got}");
                 // Points between flank and front may shorten it further, never lengthen it.
                 let beside = points.iter().any(|[x, y]| {

@@ -13,7 +13,7 @@ use crate::units::{Metres, PerMetre, Seconds};
 const QUIET: u16 = 5;
 
 /// Distance of the places of a path that are compared with what is known.
-const SPACING: Metres = Metres::lit("0.2");
+const SPACING: Metres = Metres::lit("0.25");
 
 /// Places from the first free one behind what stands on a path to the carrot.
 const BEHIND: usize = 3;
@@ -47,7 +47,7 @@ impl<const N: usize> Navigator<N> {
         let mut short = guidance.foot;
         let mut far = Metres::ZERO;
         let mut carrot = guidance.foot;
-        let look = const { Metres::lit("2.2") };
+        let look = self.look(setup).metres() + const { Metres::lit("0.2") };
         // The place ahead that is nearest to the robot, where that is nearer than the cursor.
         let mut nearest = ((guidance.foot - pose.at).norm_squared(), Metres::ZERO);
         let mut places = heapless::Vec::<Vector, 16>::new();

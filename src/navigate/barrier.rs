@@ -151,34 +151,36 @@ pub fn gate(
 ) -> Guarded {
     let margin = Steps::of(params.gate);
     let rest = Twist::REST;
-    let slower = Twist {
-        linear: MetresPerSecond::from_bits(wanted.linear.bits() >> 1),
-        ..wanted
+    let halved = MetresPerSecond::from_bits(wanted.linear.bits() >> 1);
+    // Slower, still, straighter, hardly turning, at rest.
+    let gentler = |index: usize| match index {
+        0 => (halved, wanted.angular),
+        1 => (MetresPerSecond::ZERO, wanted.angular),
+        2 => (
+            halved,
+            RadiansPerSecond::from_bits(driven.angular.bits() >> 1),
+        ),
+        3 => (
+            MetresPerSecond::ZERO,
+            RadiansPerSecond::from_bits(wanted.angular.bits() / 2),
+        ),
+        _ => (MetresPerSecond::ZERO, RadiansPerSecond::ZERO),
     };
-    let still = Twist {
-        linear: MetresPerSecond::ZERO,
-        ..wanted
-    };
-    let straighter = Twist {
-        linear: slower.linear,
-        angular: RadiansPerSecond::from_bits(driven.angular.bits() >> 1),
-    };
-    let turning = Twist {
-        linear: MetresPerSecond::ZERO,
-        angular: RadiansPerSecond::from_bits(wanted.angular.bits() / 2),
-    };
-    let tries = [
-        wanted,
-        brakes.toward(driven, slower),
-        brakes.toward(driven, still),
-        brakes.toward(driven, straighter),
-        brakes.toward(driven, turning),
-        brakes.toward(driven, rest),
-    ];
     let mut way = Trajectory::new();
-    for twist in tries {
+    let mut passes = |twist: Twist| {
         way.brake(driven, twist, brakes);
-        if way.contact(near, outline, margin).is_none() {
+        way.contact(near, outline, margin).is_none()
+    };
+    if passes(wanted) {
+        return Guarded {
+            twist: wanted,
+            ..Guarded::default()
+        };
+    }
+    for index in 0..5 {
+        let (linear, angular) = gentler(index);
+        let twist = brakes.toward(driven, Twist { linear, angular });
+        if passes(twist) {
             return Guarded {
                 twist,
                 gated: twist != wanted,

@@ -5,25 +5,29 @@
 //! uncertainty stays possible at a price. What was never seen counts as free; beyond the grid the way is straight. The
 //! [search] ends at the carrot or at the border; where its way passes a little ahead of the robot lies the guide point.
 //!
-//! The work is cut into slices: a tick does no more than its budget, and a new field is ready every few ticks. Between
-//! two fields the guide point stays where it is in the world.
+//! The work is cut into slices: a tick does no more than its budget, and a new field is ready after a few ticks. A way is
+//! kept until it is old, its end has moved, or a point appears near it; meanwhile the guide point runs along it
+//! ahead of the robot.
 
 mod costs;
 mod grid;
 mod search;
+mod way;
 
 pub use costs::Costs;
 
 use super::digest::Digest;
 use super::memory::Memory;
 use super::steps::{Steps, Vector};
-use crate::geometry::Point;
+use crate::geometry::{Point, square};
 use crate::params::ParamError;
 use crate::units::{Angle, Metres};
 use costs::Shunned;
 use fixed::types::I16F16;
-use grid::{CELL, CELLS, FREE, SIDE, middle};
+use grid::{CELL, CELL_METRES, CELLS, FREE, SIDE};
+use heapless::Vec;
 use search::Search;
+use way::{KEPT, Way};
 
 /// The field's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +48,8 @@ pub struct FieldParams {
     pub shun: u8,
     /// Cells settled in a tick (or as much other work); 8 or more.
     pub budget: u16,
+    /// Ticks after which a way is looked for anew, whatever happens.
+    pub refresh: u8,
 }
 
 impl FieldParams {
@@ -110,15 +116,16 @@ pub struct Field {
     carrot: Point,
     phase: Phase,
     /// The cells that were passed last on the way back, and how many there were in all.
-    traced: [u16; TRACED],
+    traced: [u16; KEPT],
     passed: u16,
     /// The last field's answer.
-    guide: Option<Point>,
+    way: Option<Way>,
+    /// Ticks since it was begun; saturates.
+    age: u8,
+    /// What was noticed since.
+    noticed: Vec<Point, 4>,
     shunned: Shunned,
 }
-
-/// Cells of the way that are kept: 2 m and what is driven meanwhile are no more. A power of two.
-const TRACED: usize = 16;
 
 impl Default for Field {
     fn default() -> Self {
@@ -137,9 +144,11 @@ impl Field {
             corner: ORIGIN,
             carrot: ORIGIN,
             phase: Phase::Idle,
-            traced: [0; TRACED],
+            traced: [0; KEPT],
             passed: 0,
-            guide: None,
+            way: None,
+            age: u8::MAX,
+            noticed: Vec::new(),
             shunned: Shunned::new(),
         }
     }
@@ -147,6 +156,7 @@ impl Field {
     /// Makes a place of the world dear for a while.
     pub fn shun(&mut self, params: &FieldParams, at: Point) {
         self.shunned.add(params.shun, at);
+        self.age = u8::MAX;
     }
 
     /// Shuns no place any more.
@@ -154,23 +164,35 @@ impl Field {
         self.shunned.clear();
     }
 
-    /// Forgets the guide point, and what is under way.
+    /// Forgets the way, and what is under way.
     pub fn reset(&mut self) {
         self.phase = Phase::Idle;
-        self.guide = None;
+        self.way = None;
+    }
+
+    /// Tells of something new at a place, world.
+    pub fn notice(&mut self, at: Point) {
+        // What is under way does not know of it any more, and which way it will find is not known yet.
+        let late = self.phase != Phase::Idle && self.noticed.push(at).is_err();
+        if late || self.way.as_ref().is_some_and(|way| way.passes(at)) {
+            self.age = u8::MAX;
+        }
     }
 
     /// The point to head for, world; none before the first field is ready.
-    pub fn guide(&self) -> Option<Point> {
-        self.guide
+    pub fn guide(&self, params: &FieldParams, robot: Point) -> Option<Point> {
+        self.way.as_ref().map(|way| way.along(params, robot))
     }
 
     pub(super) fn digest(&self, digest: &mut Digest) {
         for (cost, way) in self.cost.iter().zip(self.search.ways()) {
             digest.word(u32::from(*cost) << 16 | u32::from(*way));
         }
-        digest.point(self.guide.unwrap_or_default());
-        digest.word(self.shunned.len() as u32);
+        if let Some(way) = &self.way {
+            digest.point(way.robot);
+            digest.point(way.carrot);
+        }
+        digest.word(u32::from(self.age) << 16 | self.shunned.len() as u32);
     }
 
     /// A slice of work. Returns whether a field was finished.
@@ -183,10 +205,16 @@ impl Field {
         carrot: Point,
     ) -> bool {
         let mut budget = i32::from(params.budget);
+        self.age = self.age.saturating_add(1);
+        if self.phase == Phase::Idle && !self.is_stale(params, carrot) {
+            return false;
+        }
         // Every pass spends budget or moves on to the next of four phases.
         for _ in 0..4 {
             match self.phase {
                 Phase::Idle => {
+                    self.age = 0;
+                    self.noticed.clear();
                     self.begin(robot, carrot);
                     self.phase = Phase::Stamp(0);
                     // As much as filling the arrays takes.
@@ -201,7 +229,7 @@ impl Field {
                 }
                 Phase::Trace(cell) => {
                     if self.trace(cell, &mut budget) {
-                        self.guide = Some(self.along(params, robot));
+                        self.arrive();
                         self.phase = Phase::Idle;
                         return true;
                     }
@@ -214,6 +242,16 @@ impl Field {
         false
     }
 
+    /// Whether a new way is to be looked for.
+    fn is_stale(&self, params: &FieldParams, carrot: Point) -> bool {
+        const MOVED: Metres = Metres::lit("0.25");
+        self.age >= params.refresh
+            || self
+                .way
+                .as_ref()
+                .is_none_or(|way| (way.carrot - carrot).norm_squared() > square(MOVED))
+    }
+
     fn begin(&mut self, robot: Point, carrot: Point) {
         let half = Steps::from_bits(CELL.bits().wrapping_mul(SIDE as i32 / 2)) + CELL.half();
         let half = half.metres();
@@ -222,8 +260,9 @@ impl Field {
         self.corner = robot - Point::new(half, half);
         self.carrot = carrot;
         let off = carrot - self.corner;
-        // 2^16 a metre to sixteenths of a cell: by 614.4.
-        self.search.begin((off.x.bits() / 614, off.y.bits() / 614));
+        const SIXTEENTH: i32 = CELL_METRES.bits() / 16;
+        self.search
+            .begin((off.x.bits() / SIXTEENTH, off.y.bits() / SIXTEENTH));
     }
 
     fn stamp(&mut self, costs: &Costs, memory: &Memory, first: u16, budget: &mut i32) {
@@ -250,7 +289,7 @@ impl Field {
             let Some(before) = self.search.before(&self.cost, cell) else {
                 return true;
             };
-            self.traced[usize::from(self.passed) & (TRACED - 1)] = cell;
+            self.traced[usize::from(self.passed) & (KEPT - 1)] = cell;
             self.passed = self.passed.wrapping_add(1);
             cell = before;
             *budget = budget.wrapping_sub(2);
@@ -259,24 +298,15 @@ impl Field {
         false
     }
 
-    /// The place that the way reaches after `ahead` from where the robot is now.
-    fn along(&self, params: &FieldParams, robot: Point) -> Point {
-        let driven = Vector::of(robot - self.robot).norm();
-        let mut left = Steps::of(params.ahead) + driven;
-        let mut place = grid::MIDDLE_CELL;
-        let known = usize::from(self.passed).min(TRACED);
-        for back in 1..=known {
-            let next = self.traced[usize::from(self.passed).wrapping_sub(back) & (TRACED - 1)];
-            left = left - grid::length(place, next);
-            place = next;
-            if left <= Steps::ZERO {
-                break;
-            }
+    /// Takes over the way that was gone back.
+    fn arrive(&mut self) {
+        let way = self.way.get_or_insert(const { Way::new() });
+        way.robot = self.robot;
+        way.corner = self.corner;
+        way.carrot = self.carrot;
+        way.take(&self.traced, self.passed, |cell| self.search.is_exit(cell));
+        if self.noticed.iter().any(|at| way.passes(*at)) {
+            self.age = u8::MAX;
         }
-        let whole = usize::from(self.passed) == known;
-        if left > Steps::ZERO && whole && self.search.is_exit(place) {
-            return self.carrot;
-        }
-        self.corner + middle(i32::from(place) & (SIDE as i32 - 1), i32::from(place) >> 5).point()
     }
 }

@@ -223,6 +223,29 @@ impl Outline {
         }
     }
 
+    /// A length that the clearance is not less than: without a root, and where the clearance is positive at least 0.9 of
+    /// it (of the distance from the origin less the radius, for a disc).
+    pub(super) fn clearance_at_least(&self, point: Vector) -> Steps {
+        match &self.shape {
+            Shape::Rectangle {
+                middle,
+                half_length,
+                half_width,
+            } => {
+                let ahead = (point.x - *middle).abs() - *half_length;
+                let beside = point.y.abs() - *half_width;
+                if ahead <= Steps::ZERO || beside <= Steps::ZERO {
+                    ahead.max(beside)
+                } else {
+                    Vector::new(ahead, beside).norm_at_least()
+                }
+            }
+            Shape::Disc { radius } => point.norm_at_least() - *radius,
+            // Its root is a small part of what the edges cost.
+            Shape::Polygon(edges) => clearance_to(edges, point),
+        }
+    }
+
     /// Whether a point lies inside the outline and deeper than this, which is 0 or more.
     pub(super) fn covers(&self, point: Vector, deeper: Steps) -> bool {
         match &self.shape {
@@ -302,6 +325,12 @@ mod tests {
                         let deep = Steps::from_bits(deep);
                         let exact = outline.clearance(place) < -deep;
                         assert_eq!(outline.covers(place, deep), exact, "{x}, {y}, {deep:?}");
+                        let [least, whole] =
+                            [outline.clearance_at_least(place), outline.clearance(place)];
+                        assert!(least <= whole + Steps::from_bits(1), "{x}, {y}: {least:?}");
+                        // A disc's is of the distance from the origin.
+                        let slack = outline.reach.bits() / 10;
+                        assert!(least.bits() >= whole.bits() * 9 / 10 - slack, "{x}, {y}");
                     }
                 }
             }

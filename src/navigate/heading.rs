@@ -1,8 +1,10 @@
 //! Choice of the heading: the cheapest admissible sector of the polar map, refined between its neighbours.
 //!
 //! A sector is admissible if the footprint can turn into it in place and then drive at least a least distance: that is the
-//! hard check, and no rule table comes after it that could overrule it.
+//! hard check, and no rule table comes after it that could overrule it. Free travel is asked for only where the turn alone
+//! does not cost more than the cheapest heading known.
 
+use super::near::Near;
 use super::polar::{PolarMap, SECTORS, middle};
 use super::steps::Steps;
 use crate::integer::proper_fraction;
@@ -89,81 +91,148 @@ pub struct Wanted {
 pub fn choose(
     params: &HeadingParams,
     weights: &Weights,
-    map: &PolarMap,
+    map: &mut PolarMap,
+    near: &Near,
     wanted: &Wanted,
 ) -> Option<Heading> {
-    let least = Steps::of(params.least).min(wanted.distance);
     let horizon = wanted
         .distance
         .max(const { Steps::lit("0.3") })
         .min(wanted.look);
-    // Free travel as a share of the horizon, 12 fractional bits: by a product.
-    let reciprocal = proper_fraction(1 << 8, horizon.bits().unsigned_abs().max(1 << 8));
-    let taken = |free: Steps| {
-        let free = free.min(horizon).bits().max(0).unsigned_abs();
-        // free · 2^8 / horizon · 2^24 / 2^20.
-        4096u32.saturating_sub(free.wrapping_mul(reciprocal >> 8) >> 12)
+    let mut costs = Costs {
+        weights,
+        wanted,
+        map,
+        near,
+        least: Steps::of(params.least).min(wanted.distance),
+        horizon,
+        reciprocal: proper_fraction(1 << 8, horizon.bits().unsigned_abs().max(1 << 8)) >> 8,
     };
-    let admissible = |sector: usize| map.hard(sector) >= least && map.can_turn(middle(sector));
-    let turning = |sector: usize| {
+    let mut best = (u32::MAX, None);
+    let mut consider = |costs: &mut Costs<'_>, sector: usize| {
+        if let Some(cost) = costs.below(sector, best.0) {
+            best = (cost, Some(sector));
+        }
+        best.0
+    };
+    // What may be cheap first, then from the direction wanted outward, as long as the turn away from it alone is not dearer.
+    let wanted_sector = sector_of(wanted.direction);
+    consider(&mut costs, wanted_sector);
+    consider(&mut costs, sector_of(wanted.last));
+    let mut most = consider(&mut costs, 0);
+    for step in 1..=SECTORS / 2 {
+        let least_off = Angle::from_bits(((step as i32) << 26).wrapping_sub(1 << 25));
+        if Weights::angle(weights.toward, least_off) >= most || costs.map.looked() >= ENOUGH {
+            break;
+        }
+        consider(&mut costs, wanted_sector.wrapping_add(step) & (SECTORS - 1));
+        most = consider(&mut costs, wanted_sector.wrapping_sub(step) & (SECTORS - 1));
+    }
+    let sector = best.1?;
+    let free = costs.map.free(near, sector);
+    Some(Heading {
+        angle: refined(sector, wanted.direction, &mut costs),
+        hard: free.hard,
+        soft: free.soft,
+    })
+}
+
+/// When so many sectors were looked along, the best one so far has to do: that bounds a tick.
+const ENOUGH: u32 = 24;
+
+/// The sector that an angle lies in.
+fn sector_of(angle: Angle) -> usize {
+    (angle + HALF_SECTOR).bits().cast_unsigned() as usize >> 26
+}
+
+const HALF_SECTOR: Angle = Angle::from_bits(1 << 25);
+
+/// What headings cost.
+struct Costs<'a> {
+    weights: &'a Weights,
+    wanted: &'a Wanted,
+    map: &'a mut PolarMap,
+    near: &'a Near,
+    /// Least free travel.
+    least: Steps,
+    /// Free travel beyond this is worth nothing.
+    horizon: Steps,
+    /// 2⁸ a horizon, 24 fractional bits.
+    reciprocal: u32,
+}
+
+impl Costs<'_> {
+    /// What the turn costs.
+    fn turning(&self, sector: usize) -> u32 {
+        let (weights, wanted) = (self.weights, self.wanted);
         let angle = middle(sector);
         Weights::angle(weights.toward, angle - wanted.direction)
             .wrapping_add(Weights::angle(weights.ahead, angle))
             .wrapping_add(Weights::angle(weights.commitment, angle - wanted.last))
-    };
-    let tightness = |sector: usize| {
-        let [left, right] = [sector.wrapping_add(1), sector.wrapping_sub(1)];
-        let beside = taken(map.soft(left)).wrapping_add(taken(map.soft(right)));
-        (taken(map.soft(sector)).wrapping_mul(weights.soft) >> 12)
-            .wrapping_add(taken(map.hard(sector)).wrapping_mul(weights.hard) >> 12)
-            .wrapping_add(beside.wrapping_mul(weights.neighbours) >> 12)
-    };
-    let cost = |sector: usize| turning(sector).wrapping_add(tightness(sector));
-    let mut best = None::<(usize, u32)>;
-    for sector in 0..SECTORS {
-        // What the turn alone costs rules most sectors out.
-        let dearer = |known: u32| best.is_some_and(|(_, least)| known >= least);
-        if !admissible(sector) {
-            continue;
-        }
-        let turn = turning(sector);
-        if dearer(turn) {
-            continue;
-        }
-        let cost = turn.wrapping_add(tightness(sector));
-        if !dearer(cost) {
-            best = Some((sector, cost));
-        }
     }
-    let (sector, _) = best?;
-    Some(Heading {
-        angle: refined(sector, wanted.direction, admissible, cost),
-        hard: map.hard(sector),
-        soft: map.soft(sector),
-    })
+
+    fn admissible(&mut self, sector: usize) -> bool {
+        self.map.can_turn(middle(sector)) && self.map.free(self.near, sector).hard >= self.least
+    }
+
+    /// What too little room in the sector itself costs.
+    fn tightness(&mut self, sector: usize) -> u32 {
+        let free = self.map.free(self.near, sector);
+        let weights = self.weights;
+        (self.taken(free.soft).wrapping_mul(weights.soft) >> 12)
+            .wrapping_add(self.taken(free.hard).wrapping_mul(weights.hard) >> 12)
+    }
+
+    /// And in those beside it.
+    fn beside(&mut self, sector: usize) -> u32 {
+        let [left, right] = [sector.wrapping_add(1), sector.wrapping_sub(1)]
+            .map(|beside| self.map.free(self.near, beside).soft);
+        let taken = self.taken(left).wrapping_add(self.taken(right));
+        taken.wrapping_mul(self.weights.neighbours) >> 12
+    }
+
+    /// The part of the horizon that is not free, 12 fractional bits.
+    fn taken(&self, free: Steps) -> u32 {
+        let free = free.min(self.horizon).bits().max(0).unsigned_abs();
+        4096u32.saturating_sub(free.wrapping_mul(self.reciprocal) >> 12)
+    }
+
+    fn cost(&mut self, sector: usize) -> u32 {
+        self.turning(sector)
+            .wrapping_add(self.tightness(sector))
+            .wrapping_add(self.beside(sector))
+    }
+
+    /// The cost of an admissible sector, if it is less than `most`.
+    fn below(&mut self, sector: usize, most: u32) -> Option<u32> {
+        let turning = self.turning(sector);
+        if turning >= most || !self.admissible(sector) {
+            return None;
+        }
+        let own = turning.wrapping_add(self.tightness(sector));
+        if own >= most {
+            return None;
+        }
+        let cost = own.wrapping_add(self.beside(sector));
+        (cost < most).then_some(cost)
+    }
 }
 
 /// Between the sectors: the wanted direction itself if it lies in the sector, else the vertex of the parabola through
 /// the costs of the sector and its neighbours.
-fn refined(
-    sector: usize,
-    direction: Angle,
-    admissible: impl Fn(usize) -> bool,
-    cost: impl Fn(usize) -> u32,
-) -> Angle {
-    const HALF: Angle = Angle::from_bits(1 << 25);
+fn refined(sector: usize, direction: Angle, costs: &mut Costs<'_>) -> Angle {
     let centre = middle(sector);
     let off = direction - centre;
-    if off.abs().bits() <= HALF.bits() {
+    if off.abs().bits() <= HALF_SECTOR.bits() {
         return direction;
     }
     let [left, right] = [sector.wrapping_add(1) & 63, sector.wrapping_sub(1) & 63];
-    if !admissible(left) || !admissible(right) {
+    if !costs.admissible(left) || !costs.admissible(right) {
         return centre;
     }
-    let [left, own, right] = [left, sector, right].map(|s| cost(s).min(1 << 20) as i32);
+    let [left, own, right] = [left, sector, right].map(|s| costs.cost(s).min(1 << 20) as i32);
     let bend = left.wrapping_add(right).wrapping_sub(own.wrapping_mul(2));
     // (right − left) / 2·bend sectors to the left, within half a sector.
     let shift = crate::integer::ratio(1 << 25, right.wrapping_sub(left), bend);
-    centre + Angle::from_bits(shift).limit(HALF)
+    centre + Angle::from_bits(shift).limit(HALF_SECTOR)
 }

@@ -52,23 +52,22 @@ impl<const N: usize> Health<N> {
     /// one only and are never doubted.
     pub(super) fn update(&mut self, params: &HealthParams, echoes: &[Echo]) {
         let near = Steps::of(params.near);
+        let range = |echo: &Echo| echo.range().unwrap_or(Steps::MAX);
         // Beyond either end nothing is heard.
-        let hears = |index: usize, near: Steps| {
-            let within = |echo: &Echo| echo.range().is_some_and(|range| range < near);
-            echoes.get(index).is_some_and(within)
-        };
-        for ((bit, index), (doubts, echo)) in (0..32u32)
-            .zip(0usize..)
+        let mut right = Steps::MAX;
+        let mut own = echoes.first().map_or(Steps::MAX, range);
+        let after = echoes.iter().skip(1).map(range).chain([Steps::MAX]);
+        for ((bit, left), (doubts, echo)) in (0..32u32)
+            .zip(after)
             .zip(self.doubts.iter_mut().zip(echoes))
         {
             let bit = 1u32 << bit;
-            let [right, left] = [index.wrapping_sub(1), index.wrapping_add(1)];
-            let both = |near| hears(right, near) && hears(left, near);
             let doubtful = if self.proven & bit == 0 {
-                both(Steps::MAX) || hears(right, near.half()) || hears(left, near.half())
+                right.max(left) < Steps::MAX || right.min(left) < near.half()
             } else {
-                both(near)
+                right.max(left) < near
             };
+            (right, own) = (own, left);
             if echo.range().is_some() {
                 *doubts = 0;
                 self.proven |= bit;

@@ -6,19 +6,22 @@
 //! arc is carved away and the right part stays. A silent sensor neither disproves nor supports: if it is dead, nothing is
 //! lost.
 //!
-//! Cost: one pass over the points, each in the view of one to three sensors (of all, if they do not share a place), and at
-//! most five new points a sensor. When the memory is full a new point takes the place of one that is farther away, of
+//! Cost: one pass over the points, each in the view of one to three sensors (of all, if they do not share a place),
+//! and at most five new points a sensor. When the memory is full a new point takes the place of one that is farther away, of
 //! eight that are looked at.
+
+mod judge;
 
 use super::digest::Digest;
 use super::footprint::Outline;
+use super::near::Motion;
 use super::sensors::{Echo, Echoes, Eye, Eyes, View};
 use super::steps::{Bearing, Steps, Vector, retain};
 use crate::geometry::{Point, Pose};
-use crate::integer::proper_fraction;
-use crate::units::{Angle, Metres, MetresPerSecond};
+use crate::units::{Metres, MetresPerSecond};
 use fixed::types::I16F16;
 use heapless::Vec;
+use judge::Judge;
 
 /// The most points; a power of two.
 pub const CAPACITY: usize = 128;
@@ -105,7 +108,7 @@ impl Memory {
 
     /// The points, body frame of the last update.
     pub fn points(&self) -> impl Iterator<Item = Vector> + '_ {
-        self.records.iter().map(|record| self.to_body(record))
+        self.seen_from(Motion::default(), Steps::MAX)
     }
 
     /// The point with this index in the frame of [`Memory::to_local`].
@@ -133,12 +136,24 @@ impl Memory {
         digest.word(self.looked as u32);
     }
 
-    fn to_body(&self, record: &Record) -> Vector {
-        (record.at() - self.body).in_frame(self.forward)
+    /// The points closer than `look` to a body that has moved by `moved` since the last update, in its frame.
+    pub(super) fn seen_from(
+        &self,
+        moved: Motion,
+        look: Steps,
+    ) -> impl Iterator<Item = Vector> + '_ {
+        let body = self.body + moved.by.turned(self.forward);
+        let turn = self.forward.turned(moved.turn);
+        let look = look.squared();
+        self.records.iter().filter_map(move |record| {
+            let away = record.at() - body;
+            (away.norm_squared() < look).then(|| away.in_frame(turn))
+        })
     }
 
-    /// Takes over a tick's echoes, seen from `pose`.
-    pub fn update<const N: usize>(
+    /// Takes over a tick's echoes, seen from `pose`, and tells `new` of the places, world, where points are added.
+    #[allow(clippy::too_many_arguments, reason = "a tick's inputs")]
+    pub(super) fn update<const N: usize>(
         &mut self,
         params: &MemoryParams,
         outline: &Outline,
@@ -146,15 +161,20 @@ impl Memory {
         echoes: &Echoes<N>,
         pose: Pose,
         speed: MetresPerSecond,
+        mut new: impl FnMut(Point),
     ) {
         self.tick = self.tick.wrapping_add(1);
         self.place(pose);
-        let explained = self.judge(params, outline, eyes, echoes);
+        let judge = Judge::new(params, outline, eyes, echoes, self);
+        let explained = self.judge(&judge);
         let farthest = insertion_range(params, speed);
         for (index, (eye, echo)) in (0..32u32).zip(eyes.as_slice().iter().zip(echoes.as_slice())) {
             let known = explained >> index & 1 == 1;
-            if !known && echo.range().is_some_and(|range| range <= farthest) {
-                self.insert_arc(params, eye, *echo);
+            if !known
+                && echo.range().is_some_and(|range| range <= farthest)
+                && let Some(at) = self.insert_arc(eye, *echo)
+            {
+                new(at);
             }
         }
     }
@@ -165,10 +185,10 @@ impl Memory {
         let known = self.points().any(|place| {
             let from_eye = place - eye.at;
             let off = from_eye.norm() - range;
-            eye.view(from_eye) != View::Outside && off.abs() < support
+            eye.view(from_eye).0 != View::Outside && off.abs() < support
         });
         if !known {
-            self.insert_arc(params, eye, Echo::Across(range));
+            self.insert_arc(eye, Echo::Across(range));
         }
     }
 
@@ -178,11 +198,7 @@ impl Memory {
         let (body, forward) = (self.body, self.forward);
         retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
-            let sees = |index: usize| {
-                let eye = eyes.as_slice().get(index);
-                eye.is_some_and(|eye| eye.view(place - eye.at) != View::Outside)
-            };
-            outline.clearance(place) < NEAR && !eyes.around(place).any(sees)
+            outline.clearance(place) < NEAR && eyes.seeing(place, |_, _, _, _| false)
         });
     }
 
@@ -205,102 +221,42 @@ impl Memory {
         self.forward = Bearing::of(pose.heading);
     }
 
-    /// Supports, disproves and drops points. Returns the sensors whose echo is explained, a bit each.
-    fn judge<const N: usize>(
-        &mut self,
-        params: &MemoryParams,
-        outline: &Outline,
-        eyes: &Eyes<N>,
-        echoes: &Echoes<N>,
-    ) -> u32 {
-        /// Deeper than this inside the robot a point is wrong: there the robot stands.
-        const DEEP: Steps = Steps::lit("0.03");
-        let keep = Steps::of(params.keep).squared();
-        let reach = outline.reach.squared();
-        let [disproof, support] = [params.disproof, params.support].map(Steps::of);
-        /// What a range's noise may be.
-        const NOISE: Steps = Steps::lit("0.01");
-        let nearer = Steps::of(params.nearer);
-        let alone = eyes.disjoint();
-        let snap = params.snap;
-        let lifetime = (params.lifetime >> UNIT) as u8;
-        let now = (self.tick >> UNIT) as u8;
-        let (body, forward) = (self.body, self.forward);
-        let mut explained = 0u32;
+    /// Supports, disproves and drops points. Returns the sensors whose echo they explain, a bit each.
+    fn judge<const N: usize>(&mut self, judge: &Judge<'_, N>) -> u32 {
+        let mut explained = 0;
         retain(&mut self.records, |record| {
-            let place = (record.at() - body).in_frame(forward);
-            let away = place.norm_squared();
-            if away > keep
-                || now.wrapping_sub(record.seen) > lifetime
-                || (away < reach && outline.covers(place, DEEP))
-            {
-                return false;
-            }
-            for index in eyes.around(place) {
-                let (Some(eye), Some(echo)) =
-                    (eyes.as_slice().get(index), echoes.as_slice().get(index))
-                else {
-                    continue;
-                };
-                let from_eye = place - eye.at;
-                let view = eye.view(from_eye);
-                if view == View::Outside {
-                    continue;
-                }
-                if let Some(range) = echo.range() {
-                    let distance = from_eye.norm_squared();
-                    let below = |limit: Steps| limit > Steps::ZERO && distance < limit.squared();
-                    if view == View::Sure && below(range - disproof) {
-                        record.confidence = record.confidence.saturating_sub(1);
-                        if record.confidence == 0 {
-                            return false;
-                        }
-                    } else if below(range + support) && !below(range - support) {
-                        record.confidence = SURE;
-                        record.seen = now;
-                        if below(range + nearer) {
-                            explained |= 1u32.wrapping_shl(index as u32);
-                        }
-                        if snap && !below(range + NOISE) {
-                            let place = eye.at + drawn(from_eye, range);
-                            record.move_to(body + place.turned(forward));
-                        }
-                    }
-                }
-                if alone {
-                    break;
-                }
-            }
-            true
+            judge.keeps(record, &mut explained)
         });
         explained
     }
 
-    /// Fills the arc that an echo may come from.
-    fn insert_arc(&mut self, params: &MemoryParams, eye: &Eye, echo: Echo) {
-        let (range, middle, half, count) = match echo {
-            Echo::Silent => return,
-            Echo::At(range, aside) => (range, eye.heading + aside, 0, 1),
+    /// Fills the arc that an echo may come from. Returns its middle, world.
+    fn insert_arc(&mut self, eye: &Eye, echo: Echo) -> Option<Point> {
+        /// Points are at most so far apart, but five are the most.
+        const SPACED: i32 = Steps::lit("0.073").bits();
+        let (range, axis, count) = match echo {
+            Echo::Silent => return None,
+            Echo::At(range, aside) => (range, Bearing::of(eye.heading + aside), 1),
             Echo::Across(range) => {
-                let half = Angle::from_bits(eye.width.bits() >> 1)
-                    .scale(params.arc)
-                    .bits();
-                // Points a tenth of a metre apart over the whole cone's arc, five at most.
-                let width = eye.width.radians().to_bits() >> 2;
-                let arc = range.share(width.clamp(0, 1 << 15));
-                let spaced = const { Steps::lit("0.1") }.bits();
-                let count = arc.bits().wrapping_add(spaced) / spaced;
-                (range, eye.heading, half, count.clamp(1, 5))
+                let arc = range.share(eye.filled).bits();
+                (range, eye.axis, arc.wrapping_add(SPACED) / SPACED)
             }
         };
-        for i in 0..count {
-            // −1, …, 1 of the half arc; 0 for a single point.
-            let numerator = i.wrapping_mul(2).wrapping_sub(count.wrapping_sub(1));
-            let step = half.checked_div(count.wrapping_sub(1)).unwrap_or(0);
-            let direction = middle + Angle::from_bits(step.wrapping_mul(numerator));
-            let place = eye.at + Bearing::of(direction).ahead(range);
-            self.insert(self.body + place.turned(self.forward));
+        let (at, body, forward) = (eye.at, self.body, self.forward);
+        let place = |turn: Bearing| body + (at + turn.ahead(range).turned(axis)).turned(forward);
+        let middle = place(Bearing::AHEAD);
+        if count != 2 {
+            self.insert(middle);
         }
+        if count >= 2 {
+            self.insert(place(eye.flank));
+            self.insert(place(eye.flank.mirrored()));
+        }
+        if count > 3 {
+            self.insert(place(eye.inner));
+            self.insert(place(eye.inner.mirrored()));
+        }
+        Some(self.to_world(middle))
     }
 
     fn insert(&mut self, place: Vector) {
@@ -331,20 +287,8 @@ impl Memory {
     }
 }
 
-/// A place seen from its sensor, drawn half the way in to `range`.
-fn drawn(from_eye: Vector, range: Steps) -> Vector {
-    let distance = from_eye.norm();
-    let wanted = (distance + range).half();
-    let share = proper_fraction(
-        wanted.min(distance).bits().max(0).unsigned_abs(),
-        distance.bits().max(1).unsigned_abs(),
-    );
-    let share = (share >> 10) as i32;
-    Vector::new(from_eye.x.share(share), from_eye.y.share(share))
-}
-
 /// How far echoes matter at a speed: what reacting and braking take, v/5 + v²/3, and 0.4 m.
-fn insertion_range(params: &MemoryParams, speed: MetresPerSecond) -> Steps {
+pub(super) fn insertion_range(params: &MemoryParams, speed: MetresPerSecond) -> Steps {
     let speed = Steps::of(Metres::from_bits(speed.abs().bits()));
     let braking = Steps::from_bits((speed.squared() / (3 << 12)) as i32);
     let fifth = Steps::from_bits(speed.bits() / 5);

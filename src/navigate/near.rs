@@ -11,6 +11,9 @@ use heapless::Vec;
 /// The most points; if there are more, nearer ones win.
 pub const MAX_NEAR: usize = 128;
 
+/// Points closer to the outline than this come first: they decide most questions.
+const CLOSE: i16 = Steps::lit("0.15").bits() as i16;
+
 /// A point near the robot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
@@ -50,32 +53,30 @@ impl Near {
         }
     }
 
-    /// Of `points`, body frame, those closer than `look` to the middle of a body that has moved by `moved`.
-    pub fn collect(
-        &mut self,
-        points: impl Iterator<Item = Vector>,
-        outline: &Outline,
-        moved: Motion,
-        look: Steps,
-    ) {
+    /// Of `places`, in the frame of the body and within ±8 m.
+    pub fn collect(&mut self, places: impl Iterator<Item = Vector>, outline: &Outline) {
         self.spots.clear();
         self.least = Steps::MAX;
-        let look = look.squared();
-        for point in points {
-            let place = (point - moved.by).in_frame(moved.turn);
-            if place.norm_squared() >= look {
-                continue;
-            }
+        let mut close = 0usize;
+        for place in places {
             let clearance = outline.clearance(place);
             self.least = self.least.min(clearance);
-            // All three are within ±8 m.
             let narrow = |steps: Steps| steps.bits() as i16;
             let spot = Spot {
                 x: narrow(place.x),
                 y: narrow(place.y),
                 clearance: narrow(clearance),
             };
-            if self.spots.push(spot).is_err()
+            let next = self.spots.len();
+            let full = self.spots.push(spot).is_err();
+            if spot.clearance < CLOSE && !full {
+                // In place of the first one that is not close.
+                if let [earlier, .., last] = self.spots.get_mut(close..=next).unwrap_or_default() {
+                    core::mem::swap(earlier, last);
+                }
+                close = close.wrapping_add(1);
+            }
+            if full
                 && let Some(farthest) = self.spots.iter_mut().max_by_key(|spot| spot.clearance)
                 && farthest.clearance > spot.clearance
             {
@@ -166,6 +167,11 @@ impl Motion {
             turn: Bearing::of(angle),
             angle,
         }
+    }
+
+    /// A place of the body's frame, seen after the motion.
+    pub fn sees(&self, place: Vector) -> Vector {
+        (place - self.by).in_frame(self.turn)
     }
 
     /// A pose of the world after the motion.

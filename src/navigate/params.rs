@@ -82,7 +82,7 @@ impl<const N: usize> NavigatorParams<N> {
         };
         Ok(Setup {
             outline: self.footprint.outline(),
-            eyes: Eyes::new(&self.sensors),
+            eyes: Eyes::new(&self.sensors, self.memory.arc),
             costs: Costs::new(&self.field),
             weights: Weights::new(&self.heading),
             brakes,

@@ -5,12 +5,13 @@
 //! with a small margin: no heading below a least hard travel is admissible. *Soft* is that with a comfortable margin: it
 //! costs.
 //!
-//! Cost: a point touches only the sectors in whose corridor it lies, found outward from its own direction.
+//! Cost: a sector is worked out when it is first asked for, by one pass over the points near; the choice of a heading asks
+//! for few of them.
 
 use super::digest::Digest;
 use super::footprint::Outline;
 use super::near::{Near, Spot};
-use super::steps::{Bearing, Steps, Vector};
+use super::steps::{Bearing, Steps};
 use crate::units::{Angle, Metres};
 
 /// Sectors of the map.
@@ -32,11 +33,23 @@ pub struct MapParams {
     pub turning: Metres,
 }
 
+/// Free travel in a sector, from the outline's front.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Free {
+    /// With the hard margin; 0 where it is less than the least that is of use.
+    pub hard: Steps,
+    /// With the soft margin: not more.
+    pub soft: Steps,
+}
+
 /// The map, body frame.
 #[derive(Clone, Debug)]
 pub struct PolarMap {
     hard: [i16; SECTORS],
     soft: [i16; SECTORS],
+    /// The sectors worked out, 32 to a word.
+    known: [u32; SECTORS / 32],
+    widths: Widths,
     /// How far the robot can turn in place to the left and to the right, up to half a turn.
     pub left: Angle,
     /// To the right; positive.
@@ -63,24 +76,40 @@ impl PolarMap {
         Self {
             hard: [0; SECTORS],
             soft: [0; SECTORS],
+            known: [0; SECTORS / 32],
+            widths: Widths::NONE,
             left: Angle::ZERO,
             right: Angle::ZERO,
         }
     }
 
-    /// Free travel with the hard margin in a sector, from the outline's front.
-    pub fn hard(&self, sector: usize) -> Steps {
-        Steps::from_bits(self.hard.get(sector & 63).copied().unwrap_or(0).into())
+    /// Free travel in a sector among the points that the map was [drawn](Self::draw) for.
+    pub fn free(&mut self, near: &Near, sector: usize) -> Free {
+        let slot = sector & (SECTORS - 1);
+        let (word, bit) = (slot >> 5, 1u32.wrapping_shl(slot as u32));
+        if self.known[word] & bit == 0 {
+            self.known[word] |= bit;
+            (self.hard[slot], self.soft[slot]) = self.widths.look(near, MIDDLES[slot]);
+        }
+        let [hard, soft] = [self.hard[slot], self.soft[slot]];
+        Free {
+            hard: Steps::from_bits(hard.into()),
+            soft: Steps::from_bits(soft.into()),
+        }
     }
 
-    /// Free travel with the soft margin in a sector, not more than the hard one.
-    pub fn soft(&self, sector: usize) -> Steps {
-        Steps::from_bits(self.soft.get(sector & 63).copied().unwrap_or(0).into())
+    /// Sectors worked out so far.
+    pub(super) fn looked(&self) -> u32 {
+        let [lower, upper] = self.known.map(u32::count_ones);
+        lower.wrapping_add(upper)
     }
 
     pub(super) fn digest(&self, digest: &mut Digest) {
-        for (hard, soft) in self.hard.iter().zip(&self.soft) {
-            digest.pair(*hard, *soft);
+        let known = |slot: usize| self.known[slot >> 5 & 1].wrapping_shr(slot as u32) & 1 == 1;
+        for (slot, (hard, soft)) in self.hard.iter().zip(&self.soft).enumerate() {
+            if known(slot) {
+                digest.pair(*hard, *soft);
+            }
         }
         digest.word(self.left.bits().cast_unsigned());
         digest.word(self.right.bits().cast_unsigned());
@@ -96,75 +125,75 @@ impl PolarMap {
         angle.abs().bits() <= room.bits()
     }
 
-    /// Draws the map anew.
-    pub fn draw(&mut self, params: &MapParams, near: &Near, outline: &Outline) {
-        let look = Steps::of(params.look).bits() as i16;
-        self.hard = [look; SECTORS];
-        self.soft = [look; SECTORS];
-        let widths = Widths {
+    /// Begins a new map. Free travel below `least` is not worked out.
+    pub fn draw(&mut self, params: &MapParams, near: &Near, outline: &Outline, least: Steps) {
+        self.known = [0; SECTORS / 32];
+        self.widths = Widths {
+            look: Steps::of(params.look).bits() as i16,
+            least,
             front: outline.front,
             graze: outline.half_width - const { Steps::lit("0.02") },
             hard: outline.half_width + Steps::of(params.hard),
             soft: outline.half_width + Steps::of(params.soft.max(params.hard)),
         };
-        for spot in near.spots() {
-            let own = spot.at().half_sector().wrapping_add(1) >> 1;
-            self.mark(own as usize, spot.at(), &widths);
-        }
         let margin = Steps::of(params.turning);
         self.left = room(near, outline, margin, true);
         self.right = room(near, outline, margin, false);
     }
-
-    /// Enters a point into the sectors in whose corridors it lies, from its own outward: to the left, then to the right.
-    fn mark(&mut self, own: usize, at: Vector, widths: &Widths) {
-        /// A point this far behind the front line is beside the robot, no more before it.
-        const PASSED: Steps = Steps::lit("-0.12");
-        /// A quarter turn and the own sector's other half to either side are enough.
-        const FARTHEST: usize = 16;
-        let mut sector = own;
-        let mut step = 1usize;
-        let mut last = own.wrapping_add(FARTHEST);
-        loop {
-            let place = at.in_frame(MIDDLES[sector & (SECTORS - 1)]);
-            let beside = place.y.abs();
-            if place.x < Steps::ZERO || beside >= widths.soft || sector == last {
-                if step != 1 {
-                    break;
-                }
-                step = usize::MAX;
-                sector = own.wrapping_sub(1);
-                last = own.wrapping_sub(FARTHEST + 1);
-                continue;
-            }
-            let slot = sector & (SECTORS - 1);
-            sector = sector.wrapping_add(step);
-            let ahead = place.x - widths.front;
-            if ahead > Steps::ZERO {
-                let free = ahead.bits() as i16;
-                if free < self.soft[slot] {
-                    self.soft[slot] = free;
-                }
-                if beside < widths.hard && free < self.hard[slot] {
-                    self.hard[slot] = free;
-                }
-            } else if ahead > PASSED
-                && (beside <= widths.graze || ahead == Steps::ZERO)
-                && beside < widths.hard
-            {
-                self.soft[slot] = 0;
-                self.hard[slot] = 0;
-            }
-        }
-    }
 }
 
+/// How a sector is looked along.
+#[derive(Clone, Copy, Debug)]
 struct Widths {
+    look: i16,
+    least: Steps,
     front: Steps,
     /// Flanks that touch no more than this slide along.
     graze: Steps,
     hard: Steps,
     soft: Steps,
+}
+
+impl Widths {
+    const NONE: Self = Self {
+        look: 0,
+        least: Steps::ZERO,
+        front: Steps::ZERO,
+        graze: Steps::ZERO,
+        hard: Steps::ZERO,
+        soft: Steps::ZERO,
+    };
+
+    /// Free travel with the hard and with the soft margin in a direction.
+    fn look(&self, near: &Near, direction: Bearing) -> (i16, i16) {
+        /// A point this far behind the front line is beside the robot, no more before it.
+        const PASSED: Steps = Steps::lit("-0.12");
+        let (mut hard, mut soft) = (self.look, self.look);
+        for spot in near.spots() {
+            let place = spot.at().in_frame(direction);
+            let beside = place.y.abs();
+            if beside >= self.soft || place.x < Steps::ZERO {
+                continue;
+            }
+            let ahead = place.x - self.front;
+            if beside < self.hard {
+                let stands_before = ahead > Steps::ZERO && ahead < self.least;
+                let grazes = beside <= self.graze || ahead == Steps::ZERO;
+                if stands_before || (ahead <= Steps::ZERO && ahead > PASSED && grazes) {
+                    return (0, 0);
+                }
+            }
+            if ahead > Steps::ZERO {
+                // Spots are within ±8 m.
+                let free = ahead.bits() as i16;
+                soft = soft.min(free);
+                if beside < self.hard {
+                    hard = hard.min(free);
+                }
+            }
+        }
+        (hard, soft)
+    }
 }
 
 /// How far the robot can turn in place to one side: until a point comes closer than `margin` while it comes closer still.

@@ -123,7 +123,8 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
             shun: 12,
-            budget: 480,
+            budget: 240,
+            refresh: 6,
         },
         heading: HeadingParams {
             least: m!("0.08"),
@@ -162,7 +163,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             patience: 81,
             pause: 20,
             strikes: 8,
-            give_up: 850,
+            give_up: 750,
             arrival: m!("0.12"),
         },
         barrier: BarrierParams {

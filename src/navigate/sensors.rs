@@ -6,6 +6,7 @@ use crate::integer::proper_fraction;
 use crate::params::{Mount, ParamError};
 use crate::ports::{Range, RangeReading};
 use crate::units::{Angle, Metres, MetresPerSecond, Seconds};
+use fixed::types::I16F16;
 use heapless::Vec;
 
 /// The fewest and the most sensors or sectors.
@@ -130,9 +131,14 @@ impl Echo {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Eye {
     pub at: Vector,
-    axis: Bearing,
+    pub axis: Bearing,
     pub heading: Angle,
     pub width: Angle,
+    /// The part of the arc that an echo fills: an end of it and half the way there, from the axis to the left, and all
+    /// of it, radians with 14 fractional bits.
+    pub flank: Bearing,
+    pub inner: Bearing,
+    pub filled: i32,
     /// Tangents of half the width and of 0.9 of that, 14 fractional bits.
     edge: i32,
     sure: i32,
@@ -149,21 +155,23 @@ pub(super) enum View {
     Sure,
 }
 
+/// No sensor's number.
+const BLIND: u8 = u8::MAX;
+
 impl Eye {
     /// A beam still sees this far to either side: what its own width and the robot's heading leave open.
     const BEAM: Angle = Angle::deg("1");
 
-    fn new(mount: &Mount) -> Self {
-        let half = Angle::from_bits(mount.width.bits() >> 1).limit(const { Angle::deg("45") });
-        let half = if half.bits() < Self::BEAM.bits() {
-            Self::BEAM
-        } else {
-            half
-        };
+    fn new(mount: &Mount, arc: I16F16) -> Self {
+        let half = half_width(mount.width);
         let sure = Angle::from_bits((i64::from(half.bits()).wrapping_mul(9) / 10) as i32);
+        let flank = Angle::from_bits(mount.width.bits() >> 1).scale(arc);
         Self {
             at: Vector::of(mount.pose.at),
             axis: Bearing::of(mount.pose.heading),
+            flank: Bearing::of(flank),
+            inner: Bearing::of(Angle::from_bits(flank.bits() >> 1)),
+            filled: (flank.radians().to_bits() >> 1).clamp(0, 1 << 15),
             heading: mount.pose.heading,
             width: mount.width,
             edge: tangent(half),
@@ -171,18 +179,30 @@ impl Eye {
         }
     }
 
-    /// How the place, seen from the sensor (body's directions), lies in its cone.
-    pub fn view(&self, from_here: Vector) -> View {
+    /// How the place, seen from the sensor (body's directions), lies in its cone, and whether to the left of its axis.
+    #[inline(always)]
+    pub fn view(&self, from_here: Vector) -> (View, bool) {
         let place = from_here.in_frame(self.axis);
         let beside = place.y.abs();
         // A tangent is at most one: the product fits.
-        if place.x <= Steps::ZERO || beside > place.x.share(self.edge) {
+        let view = if place.x <= Steps::ZERO || beside > place.x.share(self.edge) {
             View::Outside
         } else if beside > place.x.share(self.sure) {
             View::Edge
         } else {
             View::Sure
-        }
+        };
+        (view, place.y > Steps::ZERO)
+    }
+}
+
+/// Half of a sensor's width: what it sees to either side of its axis.
+fn half_width(width: Angle) -> Angle {
+    let half = Angle::from_bits(width.bits() >> 1).limit(const { Angle::deg("45") });
+    if half.bits() < Eye::BEAM.bits() {
+        Eye::BEAM
+    } else {
+        half
     }
 }
 
@@ -197,25 +217,29 @@ fn tangent(angle: Angle) -> i32 {
 #[derive(Clone, Debug)]
 pub struct Eyes<const N: usize> {
     eyes: Vec<Eye, N>,
-    /// They all sit in one place: a place's direction tells whose cone it is in.
+    /// They all sit in one place, in the order of their directions: a place's direction tells whose cones it may be in.
     shared: bool,
     /// And their cones do not overlap.
     disjoint: bool,
-    /// Then: the sensor whose axis is nearest to the middle of each 64th of a turn.
+    /// Then: the sensor whose axis is nearest to the middle of each 64th of a turn, [`BLIND`] where none looks.
     nearest: [u8; 64],
     max_range: Steps,
     max_age: Seconds,
 }
 
 impl<const N: usize> Eyes<N> {
-    pub(super) fn new(set: &RangeSet<N>) -> Self {
+    pub(super) fn new(set: &RangeSet<N>, arc: I16F16) -> Self {
         let mut eyes: Vec<Eye, N> = Vec::new();
         for mount in &set.mounts {
             // There is room: as many as mounts.
-            let _ = eyes.push(Eye::new(mount));
+            let _ = eyes.push(Eye::new(mount, arc));
         }
         let first = eyes.first().map_or(Vector::default(), |eye| eye.at);
-        let shared = eyes.iter().all(|eye| eye.at == first);
+        let in_order = eyes
+            .iter()
+            .zip(eyes.iter().skip(1))
+            .all(|(right, left)| (left.heading - right.heading).is_left());
+        let shared = in_order && eyes.iter().all(|eye| eye.at == first);
         // A thousandth of a turn is noise.
         let apart = |a: &Eye, b: &Eye| {
             let half = |eye: &Eye| eye.width.bits() >> 1;
@@ -233,7 +257,13 @@ impl<const N: usize> Eyes<N> {
             let middle = Angle::from_bits((sector << 26).wrapping_add(1 << 25));
             let off = |eye: &Eye| (eye.heading - middle).abs().bits();
             let best = (0..32u8).zip(&eyes).min_by_key(|(_, eye)| off(eye));
-            *entry = best.map_or(0, |(index, _)| index);
+            // A whole sector beside its middle: at a boundary a place may count to either.
+            let looks =
+                |eye: &Eye| off(eye) <= half_width(eye.width).bits().saturating_add(1 << 26);
+            *entry = match best {
+                Some((index, _)) if eyes.iter().any(looks) => index,
+                _ => BLIND,
+            };
         }
         Self {
             eyes,
@@ -249,28 +279,59 @@ impl<const N: usize> Eyes<N> {
         &self.eyes
     }
 
-    /// The sensors in whose cone a place, body frame, may be, the likeliest first: three where they share a place, else all.
-    pub(super) fn around(&self, place: Vector) -> impl Iterator<Item = usize> {
-        let (count, first) = match self.eyes.first().filter(|_| self.shared) {
-            Some(eye) => {
-                let sector = (place - eye.at).half_sector() >> 1;
-                (3, self.nearest.get(sector as usize).copied().unwrap_or(0))
+    /// Tells which sensors see a place, body frame: calls `see` with the index of each, where the place lies as seen from it,
+    /// and how, until it answers `false`. Where all share a place, those whose axes are nearest are asked, and
+    /// where no cones overlap, one is called at most. Answers what was answered last, else `true`.
+    #[inline(always)]
+    pub(super) fn seeing(
+        &self,
+        place: Vector,
+        mut see: impl FnMut(usize, &Eye, Vector, View) -> bool,
+    ) -> bool {
+        let mut ask = |index: usize, eye: &Eye, from_eye: Vector| -> (bool, Option<bool>) {
+            let (view, left) = eye.view(from_eye);
+            match view {
+                View::Outside => (left, None),
+                _ => (left, Some(see(index, eye, from_eye, view))),
             }
-            None => (self.eyes.len(), 0),
         };
-        let first = usize::from(first);
-        let shared = self.shared;
-        // Beside the first one: to the right, to the left. Before the first there is none: the index is too large.
-        (0..count).map(move |i| match i {
-            1 if shared => first.wrapping_sub(1),
-            2 if shared => first.wrapping_add(1),
-            _ => first.wrapping_add(i),
-        })
-    }
-
-    /// Whether a place is in the cone of one sensor at most, its edges apart.
-    pub(super) fn disjoint(&self) -> bool {
-        self.disjoint
+        let Some(eye) = self.eyes.first().filter(|_| self.shared) else {
+            return (0..).zip(&self.eyes).all(|(index, eye)| {
+                let (_, seen) = ask(index, eye, place - eye.at);
+                seen.unwrap_or(true)
+            });
+        };
+        let from_eye = place - eye.at;
+        let sector = from_eye.sector() as usize & (self.nearest.len() - 1);
+        let first = usize::from(self.nearest[sector]);
+        let Some(eye) = self.eyes.get(first) else {
+            return true;
+        };
+        let (left, seen) = ask(first, eye, from_eye);
+        if seen.is_some() && (self.disjoint || seen == Some(false)) {
+            return seen.unwrap_or(true);
+        }
+        // The axis nearest to the sector's middle may not be the nearest one: the neighbour to the place's side. Where
+        // cones overlap, the other one, too.
+        let count = self.eyes.len();
+        let beside = |left: bool| match (left, first.wrapping_add(1) < count) {
+            (true, true) => first.wrapping_add(1),
+            (true, false) => 0,
+            (false, _) => first.checked_sub(1).unwrap_or(count.wrapping_sub(1)),
+        };
+        for left in [left, !left] {
+            let index = beside(left);
+            if let Some(eye) = self.eyes.get(index)
+                && let (_, Some(seen)) = ask(index, eye, from_eye)
+                && (self.disjoint || !seen)
+            {
+                return seen;
+            }
+            if self.disjoint {
+                break;
+            }
+        }
+        true
     }
 }
 
@@ -340,6 +401,74 @@ impl<const N: usize> Echoes<N> {
                 let within = aside.abs().bits() <= eye.width.bits() >> 1;
                 if within && echo.range().is_none_or(|known| range < known) {
                     *echo = Echo::At(range, aside);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Eyes, RangeSet, View};
+    use crate::geometry::{Point, Pose};
+    use crate::navigate::steps::{Steps, Vector};
+    use crate::units::{Angle, Metres, Seconds};
+    use fixed::types::I16F16;
+
+    fn set(field: &str, width: Option<&str>) -> RangeSet<12> {
+        let field = Angle::deg(field);
+        let (far, age) = (Metres::lit("4"), Seconds::lit("0.2"));
+        let at = Point::new(Metres::lit("0.1"), Metres::lit("-0.05"));
+        let mut set = RangeSet::sectors(at, field, far, age);
+        for mount in &mut set.mounts {
+            mount.width = width.map_or(mount.width, Angle::deg);
+        }
+        set
+    }
+
+    /// Whoever is asked of all sensors says the same as who is asked by direction.
+    #[test]
+    fn the_sensors_that_see_a_place_are_found_by_its_direction() {
+        let mut apart = set("-90", None);
+        if let Some(mount) = apart.mounts.first_mut() {
+            mount.pose = Pose::new(Point::default(), mount.pose.heading);
+        }
+        let mut reversed = set("-90", None);
+        reversed.mounts.reverse();
+        // 270° side by side, with gaps, overlapping, all around, in another order, from two places.
+        let sets = [
+            (set("-90", None), true),
+            (set("-90", Some("12")), true),
+            (set("-90", Some("40")), false),
+            (set("0", None), true),
+            (reversed, true),
+            (apart, false),
+        ];
+        for (number, (set, disjoint)) in sets.iter().enumerate() {
+            set.check().unwrap();
+            let eyes = Eyes::new(set, I16F16::ONE);
+            for x in (-6000..=6000).step_by(233) {
+                for y in (-6000..=6000).step_by(271) {
+                    let place = Vector::new(Steps::from_bits(x), Steps::from_bits(y));
+                    let views = (0..12).filter(|i: &usize| {
+                        let eye = &eyes.as_slice()[*i];
+                        eye.view(place - eye.at).0 != View::Outside
+                    });
+                    let seen: heapless::Vec<usize, 12> = views.collect();
+                    let mut asked = heapless::Vec::<usize, 12>::new();
+                    eyes.seeing(place, |index, _, _, _| {
+                        asked.push(index).unwrap();
+                        true
+                    });
+                    asked.sort_unstable();
+                    if *disjoint {
+                        // At an edge two may see it: one is asked.
+                        assert_eq!(asked.is_empty(), seen.is_empty(), "{number}: {x}, {y}");
+                    } else {
+                        // Four overlap at most; the three nearest are asked.
+                        assert_eq!(asked.len(), seen.len().min(3), "{number}: {x}, {y}");
+                    }
+                    assert!(asked.iter().all(|index| seen.contains(index)));
                 }
             }
         }

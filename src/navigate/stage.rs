@@ -7,11 +7,11 @@ pub enum Stage {
     Remember,
     /// The points near the predicted body.
     Near,
-    /// The polar map.
+    /// How far the robot can turn in place.
     Map,
     /// Where to head: the path, or a slice of the guide field.
     Course,
-    /// The choice of the heading.
+    /// The choice of the heading, and the sectors of the polar map that it asks for.
     Heading,
     /// The higher level's decision.
     Supervise,

@@ -131,7 +131,8 @@ impl Trail {
             return false;
         }
         self.ticks = (params.patience / NOTED as u16).saturating_sub(1);
-        let reach = square(params.progress);
+        // Noted every few ticks, so a little beside where a stall began.
+        let reach = square(params.progress + const { Metres::lit("0.1") });
         for (bit, place) in (0..16u32).zip(&self.places) {
             if (at - *place).norm_squared() > reach {
                 self.stayed &= !(1 << bit);
@@ -184,6 +185,11 @@ impl State {
             least: Metres::MAX,
             since_least: 0,
         }
+    }
+
+    /// Whether it is on the path.
+    pub fn follows(&self) -> bool {
+        self.manoeuvre == Manoeuvre::Follow
     }
 
     /// The manoeuvre of this tick, and what it means for what is remembered.

@@ -1,7 +1,8 @@
 //! Motions of the body in small steps, and how far they stay clear of the points near it.
 //!
-//! A point's clearance changes by no more in a step than the body's farthest point moves. So where there is room, steps
-//! are skipped, and few points are looked at more than twice.
+//! Only points in the box that the body passes through are looked at. Their clearance changes by no more in a step than the
+//! body's farthest point moves: where there is room, steps are skipped, and where a bound of the clearance shows
+//! the room, no root is taken.
 
 use super::footprint::Outline;
 use super::near::Near;
@@ -34,9 +35,13 @@ pub struct Trajectory {
     // Finer than the poses: what many steps lose by rounding is more than a margin has to spare.
     at: Point,
     heading: Angle,
+    forward: Bearing,
     /// The longest step, and the largest turn in one.
     advance: Steps,
     turn: Angle,
+    /// The box of all its places, the first one's among them.
+    least: Vector,
+    most: Vector,
 }
 
 /// Where a trajectory meets a point.
@@ -55,8 +60,11 @@ impl Trajectory {
             poses: Vec::new(),
             at: Point::new(Metres::ZERO, Metres::ZERO),
             heading: Angle::ZERO,
+            forward: Bearing::AHEAD,
             advance: Steps::ZERO,
             turn: Angle::ZERO,
+            least: Vector::ZERO,
+            most: Vector::ZERO,
         }
     }
 
@@ -98,8 +106,11 @@ impl Trajectory {
         self.poses.clear();
         self.at = Point::new(Metres::ZERO, Metres::ZERO);
         self.heading = Angle::ZERO;
+        self.forward = Bearing::AHEAD;
         self.advance = Steps::ZERO;
         self.turn = Angle::ZERO;
+        self.least = Vector::ZERO;
+        self.most = Vector::ZERO;
     }
 
     /// Becomes the way of a [braked](Self::braked) twist, in place.
@@ -120,19 +131,32 @@ impl Trajectory {
     }
 
     fn go(&mut self, way: Metres, turn: Angle) {
-        let middle = self.heading + Angle::from_bits(turn.bits() >> 1);
-        self.at = self.at + Point::polar(way, middle);
-        self.heading = self.heading + turn;
+        let before = self.forward;
+        if turn != Angle::ZERO {
+            self.heading = self.heading + turn;
+            self.forward = Bearing::of(self.heading);
+        }
+        // Along the mean of both bearings, which is shorter than one by an eighth of the turn's square: less than a
+        // thousandth at 3 rad/s.
+        let along = |before: i16, after: i16| {
+            let sum = i32::from(before).wrapping_add(after.into());
+            Metres::from_bits(way.bits().wrapping_mul(sum) >> 15)
+        };
+        let [c, s] = before.bits();
+        let [cos, sin] = self.forward.bits();
+        self.at = self.at + Point::new(along(c, cos), along(s, sin));
         self.advance = self.advance.max(Steps::of(way.abs()) + Steps::from_bits(1));
         if turn.abs().bits() > self.turn.bits() {
             self.turn = turn.abs();
         }
         // The callers' loops end before it is full.
         let at = Vector::of(self.at);
+        self.least = Vector::new(self.least.x.min(at.x), self.least.y.min(at.y));
+        self.most = Vector::new(self.most.x.max(at.x), self.most.y.max(at.y));
         let _ = self.poses.push(Placed {
             x: at.x.bits() as i16,
             y: at.y.bits() as i16,
-            turn: Bearing::of(self.heading),
+            turn: self.forward,
         });
     }
 
@@ -158,14 +182,26 @@ impl Trajectory {
         let turn = self.turn.radians().to_bits() >> 2;
         let swept = outline.reach.bits().wrapping_mul(turn.min(1 << 15)) >> 14;
         let pace = self.advance.bits().wrapping_add(swept).wrapping_add(2);
-        let skipped = |room: Steps| room.bits().max(0).checked_div(pace).unwrap_or(0) as usize;
+        // Whole steps that a room allows, by a product: room · 2^16/pace fits, and the quotient is never too large.
+        let reciprocal = (1u32 << 16).checked_div(pace.unsigned_abs()).unwrap_or(0);
+        let skipped = |room: Steps| {
+            let room = room.bits().max(0).unsigned_abs();
+            (room.wrapping_mul(reciprocal) >> 16) as usize
+        };
         let mut first = None::<Contact>;
         let mut end = self.poses.len();
         // Farther away than this it is not reached: most points are.
         let reach = pace.wrapping_mul(end as i32);
+        let wide = outline.reach + margin;
+        let wide = Vector::new(wide, wide);
+        let (least, most) = (self.least - wide, self.most + wide);
         for spot in near.spots() {
             let mut before = spot.clearance();
             if (before - margin).bits() >= reach {
+                continue;
+            }
+            let at = spot.at();
+            if at.x <= least.x || at.x >= most.x || at.y <= least.y || at.y >= most.y {
                 continue;
             }
             let mut step = skipped(before - margin);
@@ -175,13 +211,23 @@ impl Trajectory {
                     break;
                 };
                 let [x, y] = [pose.x, pose.y].map(|steps| Steps::from_bits(steps.into()));
-                let place = spot.at() - Vector::new(x, y);
-                let here = outline.clearance(place.in_frame(pose.turn));
-                if here < margin && here < before {
-                    let room = (before - margin).bits().max(0) << 8;
-                    let part = room.checked_div((before - here).bits()).unwrap_or(0);
-                    // Where steps were skipped, `before` says nothing of this one.
-                    let part = if adjacent { part.clamp(0, 1 << 8) } else { 0 };
+                let place = (at - Vector::new(x, y)).in_frame(pose.turn);
+                let room = skipped(outline.clearance_at_least(place) - margin);
+                if room > 0 {
+                    adjacent = false;
+                    step = step.saturating_add(1).saturating_add(room);
+                    continue;
+                }
+                let here = outline.clearance(place);
+                // Where steps were skipped there was room a step ago.
+                if here < margin && (!adjacent || here < before) {
+                    let part = if adjacent {
+                        let room = (before - margin).bits().max(0) << 8;
+                        let part = room.checked_div((before - here).bits()).unwrap_or(0);
+                        part.clamp(0, 1 << 8)
+                    } else {
+                        0
+                    };
                     first = Some(Contact { step, part });
                     end = step;
                     break;

@@ -12,8 +12,8 @@ use heapless::Vec;
 #[derive(Clone, Debug)]
 pub struct Costs {
     by_square: [u8; 64],
-    /// Cells that a point can reach to either side.
-    cells: i32,
+    /// How far a point reaches.
+    far: Steps,
 }
 
 /// Squares of a step in an entry, as a power of two: 64 entries are 0.5 m.
@@ -40,40 +40,50 @@ impl Costs {
             };
             *cost = (factor.to_bits() >> 14).clamp(FREE.into(), u8::MAX.into()) as u8;
         }
-        // A point lies at most half a cell beside its own cell's middle.
-        let beyond = Steps::of(far) - CELL.half();
-        let cells = beyond.bits().max(0).wrapping_add(CELL.bits() - 1) / CELL.bits();
-        Self { by_square, cells }
+        let far = Steps::of(far);
+        Self { by_square, far }
     }
 
     /// Enters a point, seen from the grid's corner.
     pub(super) fn stamp(&self, grid: &mut [u8; CELLS], place: Vector) {
-        let (column, row) = cell_of(place);
-        let last = SIDE as i32 - 1;
-        let last = last as u32;
-        let within = |i: i32| {
-            let [first, end] = [i.wrapping_sub(self.cells), i.wrapping_add(self.cells)];
-            (first.max(0) as u32, end.min(last as i32))
+        // The cells whose middles are within reach along both axes.
+        let far = Vector::new(self.far, self.far);
+        let half = Vector::new(CELL.half(), CELL.half());
+        let (before, last) = (cell_of(place - far - half), cell_of(place + far - half));
+        let within = |before: i32, last: i32| {
+            let first = before.wrapping_add(1).max(0);
+            (first, last.min(SIDE as i32 - 1))
         };
-        let ((left, right), (bottom, top)) = (within(column), within(row));
-        let corner = middle(left as i32, bottom as i32) - place;
-        let (mut beside, mut r) = (corner.y, bottom);
-        while r as i32 <= top {
-            let across = beside.squared();
-            let (mut along, mut c) = (corner.x, left);
-            while c as i32 <= right {
-                let square = along.squared().wrapping_add(across) >> SQUARES;
-                if let Some(dear) = self.by_square.get(square as usize) {
-                    let cost = &mut grid[cell(c as usize, r as usize)];
-                    if *cost < *dear {
-                        *cost = *dear;
-                    }
+        let ((left, right), (bottom, top)) = (within(before.0, last.0), within(before.1, last.1));
+        let corner = middle(left, bottom) - place;
+        let width = right.wrapping_sub(left).wrapping_add(1).max(0) as usize;
+        // (x + c)² − x² = 2·c·x + c², which itself grows by 2·c² a cell.
+        const ON: u32 = 2 * CELL.squared();
+        let ahead = |x: Steps| {
+            (CELL.bits().wrapping_mul(x.bits()) as u32)
+                .wrapping_mul(2)
+                .wrapping_add(CELL.squared())
+        };
+        let (mut square, mut up) = (corner.norm_squared(), ahead(corner.y));
+        let along = ahead(corner.x);
+        let mut first = cell(left as usize, bottom as usize);
+        for _ in bottom..=top {
+            let (mut here, mut on) = (square, along);
+            let row = grid
+                .get_mut(first..first.wrapping_add(width))
+                .unwrap_or_default();
+            for cost in row {
+                if let Some(dear) = self.by_square.get((here >> SQUARES) as usize)
+                    && *cost < *dear
+                {
+                    *cost = *dear;
                 }
-                along = along + CELL;
-                c = c.wrapping_add(1);
+                here = here.wrapping_add(on);
+                on = on.wrapping_add(ON);
             }
-            beside = beside + CELL;
-            r = r.wrapping_add(1);
+            square = square.wrapping_add(up);
+            up = up.wrapping_add(ON);
+            first = first.wrapping_add(SIDE);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The field's grid: 32 × 32 square cells around the place of the robot when the field was begun.
 
 use crate::navigate::steps::{Steps, Vector};
+use crate::units::Metres;
 
 /// Cells along a side.
 pub(super) const SIDE: usize = 32;
@@ -10,8 +11,10 @@ pub(super) const MIDDLE: usize = SIDE / 2;
 pub(super) const MIDDLE_CELL: u16 = cell(MIDDLE, MIDDLE) as u16;
 /// Cells in all.
 pub(super) const CELLS: usize = SIDE * SIDE;
-/// A cell's side, 0.15 m.
-pub(super) const CELL: Steps = Steps::lit("0.15");
+/// A cell's side.
+pub(super) const CELL: Steps = Steps::lit("0.18");
+/// The same in metres.
+pub(super) const CELL_METRES: Metres = Metres::lit("0.18");
 /// Steps to cells, 24 fractional bits.
 const PER_CELL: i32 = ((1 << 24) + CELL.bits() - 1) / CELL.bits();
 /// Cost of a free cell, as a factor with two fractional bits.

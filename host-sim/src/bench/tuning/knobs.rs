@@ -166,7 +166,7 @@ pub static KNOBS: [Knob; 44] = [
     knob!(metres supervisor.escape, 0.1 to 0.7),
     knob!(count supervisor.stuck, 1.0 to 10.0),
     knob!(count supervisor.still, 3.0 to 20.0),
-    knob!(metres barrier.margin, 0.005 to 0.05),
+    knob!(metres barrier.margin, 0.015 to 0.05),
     knob!(number barrier.braking, 0.6 to 2.2),
     knob!(number barrier.share, 0.6 to 1.0),
     knob!(peak "deflection.S", deflections[1], 15.0 to 37.0),
