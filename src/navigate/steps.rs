@@ -348,12 +348,10 @@ mod tests {
         for x in (-30_000..=30_000).step_by(991) {
             for y in (-30_000..=30_000).step_by(787) {
                 let vector = Vector::new(Steps::from_bits(x), Steps::from_bits(y));
-                let exact = f64::from(x).hypot(f64::from(y));
-                let bound = f64::from(vector.norm_at_least().bits());
-                assert!(
-                    bound <= exact && bound > 0.9 * exact - 2.0,
-                    "{x}, {y}: {bound}"
-                );
+                let exact = i64::from(x).pow(2) + i64::from(y).pow(2);
+                let bound = i64::from(vector.norm_at_least().bits());
+                assert!(bound.pow(2) <= exact, "{x}, {y}: {bound}");
+                assert!((10 * (bound + 2)).pow(2) > 81 * exact, "{x}, {y}: {bound}");
             }
         }
     }

@@ -93,10 +93,11 @@ impl Way {
 mod tests {
     use super::{KEPT, Way};
     use crate::geometry::Point;
-    use crate::navigate::field::grid::{CELL, MIDDLE, SIDE};
+    use crate::navigate::field::grid::{CELL, CELL_METRES, MIDDLE, SIDE};
     use crate::navigate::presets;
-    use crate::navigate::steps::Vector;
+    use crate::navigate::steps::{Steps, Vector};
     use crate::units::Metres;
+    use fixed::types::I16F16;
 
     /// Columns after which a way turns into the rows.
     const STRAIGHT: u16 = 12;
@@ -117,29 +118,30 @@ mod tests {
         way
     }
 
-    fn ahead_of(way: &Way, driven: &str) -> f64 {
+    /// How far ahead of the way's beginning the guide point lies, a robot having driven so far.
+    fn ahead_of(way: &Way, driven: Metres) -> i32 {
         let params = presets::jackal::<16>().field;
-        let robot = way.robot + Point::new(Metres::lit(driven), Metres::ZERO);
+        let robot = way.robot + Point::new(driven, Metres::ZERO);
         let place = Vector::of(way.along(&params, robot) - way.corner);
         let middle = CELL.bits() * MIDDLE as i32 + CELL.bits() / 2;
-        f64::from(place.x.bits() - middle) / 4096.0
+        place.x.bits() - middle
     }
 
     #[test]
     fn the_guide_point_runs_ahead_of_the_robot() {
+        let params = presets::jackal::<16>().field;
         let way = straight(20, false);
-        let ahead = f64::from(presets::jackal::<16>().field.ahead.bits()) / 65536.0;
-        for driven in ["0", "0.2", "0.5", "1"] {
-            let got = ahead_of(&way, driven) - driven.parse::<f64>().unwrap();
+        let ahead = Steps::of(params.ahead).bits();
+        for driven in ["0", "0.2", "0.5", "1"].map(Metres::lit) {
+            let got = ahead_of(&way, driven) - Steps::of(driven).bits();
             assert!(
-                (ahead - 0.01..ahead + 0.19).contains(&got),
-                "{driven}: {got}"
+                (ahead - 8..=ahead + CELL.bits() + 8).contains(&got),
+                "{driven:?}: {got}"
             );
         }
         // It stays at the end of what is kept, and at the end of a way that arrives the carrot is next.
-        let end = f64::from(CELL.bits()) / 4096.0 * f64::from(STRAIGHT);
-        assert!((ahead_of(&way, "4") - end).abs() < 0.01);
-        let params = presets::jackal::<16>().field;
+        let end = CELL.bits() * i32::from(STRAIGHT);
+        assert!((ahead_of(&way, Metres::lit("4")) - end).abs() < 40);
         let arrives = straight(2, true);
         assert_eq!(arrives.along(&params, arrives.robot), arrives.carrot);
         assert!(!straight(20, true).arrives);
@@ -148,21 +150,19 @@ mod tests {
     #[test]
     fn what_is_beside_a_way_may_change_it() {
         let way = straight(10, false);
-        let at = |x: f64, y: f64| {
-            let middle = (MIDDLE as f64 + 0.5) * 0.18;
-            let metres = |v: f64| Metres::from_bits((v * 65536.0) as i32);
-            way.corner + Point::new(metres(middle + x), metres(middle + y))
-        };
+        let middle = CELL_METRES.scale(const { I16F16::lit("0.5") });
         for (x, y, near) in [
-            (0.0, 0.0, true),
-            (1.0, 0.4, true),
-            (1.0, -0.4, true),
-            (-0.3, 0.0, true),
-            (1.0, 0.5, false),
-            (-0.6, 0.0, false),
-            (2.4, 0.0, false),
+            ("0", "0", true),
+            ("1", "0.4", true),
+            ("1", "-0.4", true),
+            ("-0.3", "0", true),
+            ("1", "0.5", false),
+            ("-0.6", "0", false),
+            ("2.4", "0", false),
         ] {
-            assert_eq!(way.passes(at(x, y)), near, "{x}, {y}");
+            let cells = Metres::from_bits(CELL_METRES.bits() * MIDDLE as i32) + middle;
+            let place = Point::new(cells + Metres::lit(x), cells + Metres::lit(y));
+            assert_eq!(way.passes(way.corner + place), near, "{x}, {y}");
         }
     }
 }
