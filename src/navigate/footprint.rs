@@ -204,28 +204,18 @@ impl Outline {
     /// Distance of a point to the outline, exact to a step or two; inside below zero, there as far as to the nearest
     /// edge.
     pub fn clearance(&self, point: Vector) -> Steps {
-        match &self.shape {
-            Shape::Rectangle {
-                middle,
-                half_length,
-                half_width,
-            } => {
-                let ahead = (point.x - *middle).abs() - *half_length;
-                let beside = point.y.abs() - *half_width;
-                if ahead <= Steps::ZERO || beside <= Steps::ZERO {
-                    ahead.max(beside)
-                } else {
-                    Vector::new(ahead, beside).norm()
-                }
-            }
-            Shape::Disc { radius } => point.norm() - *radius,
-            Shape::Polygon(edges) => clearance_to(edges, point),
-        }
+        self.clearance_by(point, Vector::norm)
     }
 
-    /// A length that the clearance is not less than: without a root, and where the clearance is positive at least 0.9 of
-    /// it (of the distance from the origin less the radius, for a disc).
+    /// A length not above the clearance: without a root, and where the clearance is positive at least 0.9 of
+    /// it (of the distance from the origin less the radius, for a disc). A polygon's is exact: its root is a small
+    /// part of what its edges cost.
     pub(super) fn clearance_at_least(&self, point: Vector) -> Steps {
+        self.clearance_by(point, Vector::norm_at_least)
+    }
+
+    #[inline(always)]
+    fn clearance_by(&self, point: Vector, norm: impl Fn(Vector) -> Steps) -> Steps {
         match &self.shape {
             Shape::Rectangle {
                 middle,
@@ -237,11 +227,10 @@ impl Outline {
                 if ahead <= Steps::ZERO || beside <= Steps::ZERO {
                     ahead.max(beside)
                 } else {
-                    Vector::new(ahead, beside).norm_at_least()
+                    norm(Vector::new(ahead, beside))
                 }
             }
-            Shape::Disc { radius } => point.norm_at_least() - *radius,
-            // Its root is a small part of what the edges cost.
+            Shape::Disc { radius } => norm(point) - *radius,
             Shape::Polygon(edges) => clearance_to(edges, point),
         }
     }

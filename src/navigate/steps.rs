@@ -141,11 +141,6 @@ impl Vector {
         Steps(most.wrapping_mul(59).wrapping_add(least.wrapping_mul(23)) >> 6)
     }
 
-    /// No shorter than the length and at most √2 of it: without a root.
-    pub fn norm_at_most(self) -> Steps {
-        self.x.abs() + self.y.abs()
-    }
-
     /// Direction; 0 for the null vector.
     pub fn direction(self) -> Angle {
         Angle::of(self.x.0, self.y.0)
