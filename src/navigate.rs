@@ -27,6 +27,7 @@ mod health;
 mod memory;
 mod near;
 mod params;
+mod places;
 mod polar;
 pub mod presets;
 mod sensors;
@@ -55,7 +56,7 @@ pub use trajectory::{Brakes, MAX_STEPS, Trajectory};
 
 use crate::behaviour::follower::follow;
 use crate::geometry::{Point, Pose};
-use crate::guide::{Cursor, Path, pace};
+use crate::guide::{Bends, Cursor, Path, pace};
 use crate::ports::RangeReading;
 use crate::signals::{Guidance, Twist};
 use crate::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond};
@@ -104,6 +105,8 @@ pub struct Navigator<const N: usize> {
     map: PolarMap,
     field: Field,
     cursor: Cursor,
+    places: places::Places,
+    bends: Bends,
     supervisor: supervisor::State,
     escape: escape::Escape,
     /// The last command, and the one before.
@@ -113,6 +116,18 @@ pub struct Navigator<const N: usize> {
     chosen: Angle,
     /// Ticks since the path was last contradicted; saturates.
     quiet: u16,
+    busy: Busy,
+}
+
+/// What a tick was busy with: the next one is much the same.
+#[derive(Clone, Copy, Debug, Default)]
+struct Busy {
+    /// Sectors of the polar map worked out.
+    sectors: u8,
+    /// The gate tried more than the wanted twist.
+    gated: bool,
+    /// Arcs were looked along.
+    escapes: bool,
 }
 
 impl<const N: usize> Default for Navigator<N> {
@@ -125,6 +140,10 @@ impl<const N: usize> Default for Navigator<N> {
 const LOOK: Steps = Steps::lit("2");
 const BEYOND: Steps = Steps::lit("0.45");
 
+/// What a tick may cost before the guide field has to wait, in its [units](FieldParams::budget), and what it gets anyway.
+const WHOLE: i32 = 340;
+const LEAST: i32 = 12;
+
 impl<const N: usize> Navigator<N> {
     /// A robot at rest that has seen nothing.
     pub const fn new() -> Self {
@@ -136,18 +155,27 @@ impl<const N: usize> Navigator<N> {
             map: PolarMap::new(),
             field: Field::new(),
             cursor: Cursor::new(),
+            places: places::Places::new(),
+            bends: Bends::new(),
             supervisor: supervisor::State::new(),
             escape: escape::Escape::new(),
             last: Twist::REST,
             before: Twist::REST,
             chosen: Angle::ZERO,
             quiet: u16::MAX,
+            busy: Busy {
+                sectors: 0,
+                gated: false,
+                escapes: false,
+            },
         }
     }
 
     /// Begins a new task; what was seen stays known.
     pub fn restart(&mut self) {
         self.cursor = Cursor::new();
+        self.places.clear();
+        self.bends = Bends::new();
         self.supervisor = supervisor::State::new();
         self.field.reset();
         self.field.forgive();
@@ -199,12 +227,13 @@ impl<const N: usize> Navigator<N> {
             self.last.linear,
             |at| self.field.notice(at),
         );
-        let dead = self.health.dead(&p.health);
-        for (index, eye) in (0..32usize).zip(setup.eyes.as_slice()) {
+        let dead = self.health.dead();
+        let some = if dead == 0 { 0 } else { 32 };
+        for (index, eye) in (0..some).zip(setup.eyes.as_slice()) {
             if dead >> index & 1 == 1
                 && let Some(range) = Health::<N>::lent(&p.health, self.echoes.as_slice(), index)
             {
-                self.memory.assume(&p.memory, eye, range);
+                self.memory.assume(&p.memory, index as u8, eye, range);
             }
         }
         probe.mark(Stage::Remember);
@@ -269,6 +298,11 @@ impl<const N: usize> Navigator<N> {
         probe.mark(Stage::Behave);
         let guarded = self.guard(setup, wanted);
         probe.mark(Stage::Guard);
+        self.busy = Busy {
+            sectors: self.map.looked() as u8,
+            gated: guarded.gated,
+            escapes: self.escape.worked,
+        };
         self.before = core::mem::replace(&mut self.last, guarded.twist);
         NavigationRecord {
             manoeuvre,
@@ -281,6 +315,26 @@ impl<const N: usize> Navigator<N> {
             points: self.memory.len() as u16,
             dead,
         }
+    }
+
+    /// What a tick costs without the guide field, about, in its units, from what was counted on a Cortex-M4: by the points of
+    /// this one and by what the last one was busy with.
+    fn spent(&self) -> i32 {
+        let [points, near, close] = [
+            self.memory.len(),
+            self.near.spots().len(),
+            self.near.close(),
+        ]
+        .map(|count| count as u32);
+        let sectors = u32::from(self.busy.sectors).wrapping_mul(near.wrapping_add(10));
+        let gates = if self.busy.gated { 2 } else { 1 };
+        let gate = (close.wrapping_mul(22) >> 3).wrapping_add(20);
+        65u32
+            .wrapping_add(points.wrapping_mul(7) >> 3)
+            .wrapping_add(near.wrapping_mul(5) >> 3)
+            .wrapping_add(sectors >> 3)
+            .wrapping_add(gate.wrapping_mul(gates))
+            .wrapping_add(if self.busy.escapes { 50 } else { 0 }) as i32
     }
 
     /// How far from the middle of the body points matter.
@@ -297,8 +351,10 @@ impl<const N: usize> Navigator<N> {
         };
         let mut head_for = course.carrot;
         if course.guided {
+            let left = WHOLE.wrapping_sub(self.spent()).max(LEAST);
+            let costs = &setup.costs;
             self.field
-                .work(&p.field, &setup.costs, &self.memory, pose.at, course.carrot);
+                .work(&p.field, left, costs, &self.memory, pose.at, course.carrot);
             head_for = self.field.guide(&p.field, pose.at).unwrap_or(course.carrot);
         } else {
             self.field.reset();
@@ -387,13 +443,18 @@ impl<const N: usize> Navigator<N> {
         let p = &setup.params;
         let outline = &setup.outline;
         let room = (self.map.left, self.map.right);
-        let doubted = p.doubt.cap(
-            &setup.eyes,
-            self.echoes.as_slice(),
-            outline,
-            self.last.linear,
-            p.period + p.latency,
-        );
+        // Who drives no faster anyway need not ask.
+        let doubted = if p.limits.speed <= p.doubt.careful {
+            p.limits.speed
+        } else {
+            p.doubt.cap(
+                &setup.eyes,
+                self.echoes.as_slice(),
+                outline,
+                self.last.linear,
+                p.period + p.latency,
+            )
+        };
         let healthy = self.health.cap(&p.health, &setup.eyes);
         let fastest = p.limits.speed.min(healthy).min(doubted);
         let wanted = Twist {

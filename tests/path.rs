@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use fixed::types::I16F16;
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::guide::{
-    Cursor, Fix, MAX_PIECES, Path, PathError, Segment, StoreError, StoredPath, Waypoint,
+    Bends, Cursor, Fix, MAX_PIECES, Path, PathError, Segment, StoreError, StoredPath, Waypoint,
 };
 use fuzzypilot::units::{Angle, Metres, MetresPerSecond, PerMetre};
 use proptest::prelude::*;
@@ -324,8 +324,10 @@ fn the_next_corner_is_seen_within_reach_and_skipped_to() {
     let path = Path::segments(&segments, false).unwrap();
     let mut cursor = Cursor::default();
     cursor.advance(&path, point(0.5, 0.0), metres(1.0));
-    assert_eq!(cursor.corner_ahead(&path, metres(2.49)), None);
-    let (way, jump) = cursor.corner_ahead(&path, metres(2.51)).unwrap();
+    let mut bends = Bends::new();
+    bends.follow(&path, &cursor, metres(2.51));
+    assert_eq!(bends.corner(&cursor, metres(2.49)), None);
+    let (way, jump) = bends.corner(&cursor, metres(2.51)).unwrap();
     assert!((f(way) - 2.5).abs() < 1e-3, "{way:?}");
     let quarter = Angle::QUARTER.bits();
     assert!(
@@ -334,7 +336,8 @@ fn the_next_corner_is_seen_within_reach_and_skipped_to() {
     );
     cursor.skip(&path, way);
     // Behind it, where no other one is.
-    assert_eq!(cursor.corner_ahead(&path, metres(100.0)), None);
+    bends.follow(&path, &cursor, metres(100.0));
+    assert_eq!(bends.corner(&cursor, metres(100.0)), None);
     let fix = cursor.advance(&path, point(2.9848, 0.1736), metres(0.0));
     assert!((f(fix.progress) - 3.0).abs() < 1e-3, "{fix:?}");
     // Not beyond an open path's end.
@@ -541,6 +544,52 @@ fn points_on_an_arc_give_the_arc() {
         assert!(worst[0] > 1e-5 && worst[0] < 2e-4);
         assert!(worst[1].max(worst[2]) < 1e-3);
     }
+}
+
+/// Pieces remembered from tick to tick say the same as those looked at anew.
+#[test]
+fn bends_ahead_are_what_the_cursor_sees() {
+    // A wave of arcs between lines, 0.3 m a piece.
+    let mut segments = Vec::new();
+    let (mut x, mut y, mut heading) = (0.0f64, 0.0f64, 0.0f64);
+    for number in 0..60 {
+        if number % 3 == 2 {
+            segments.push(line(x, y, heading, 0.3));
+            (x, y) = (x + 0.3 * heading.cos(), y + 0.3 * heading.sin());
+            continue;
+        }
+        let degrees = [34.0f64, -34.0, 17.0, -17.0][number % 4];
+        let (side, radius) = (degrees.signum(), 0.3 / degrees.to_radians().abs());
+        let centre = heading + side * PI / 2.0;
+        let (cx, cy) = (x + radius * centre.cos(), y + radius * centre.sin());
+        segments.push(arc(cx, cy, radius, centre + PI, degrees));
+        heading += degrees.to_radians();
+        let out = heading - side * PI / 2.0;
+        (x, y) = (cx + radius * out.cos(), cy + radius * out.sin());
+    }
+    let path = Path::segments(&segments, false).unwrap();
+    let mut cursor = Cursor::default();
+    let mut bends = Bends::new();
+    let mut changes = 0;
+    for tick in 0..400 {
+        bends.follow(&path, &cursor, metres(1.0));
+        if tick > 2 {
+            for lead in [0.0, 0.1, 0.25, 0.6, 0.95] {
+                let lead = metres(lead);
+                let got = bends.curvature(&path, &cursor, lead);
+                let seen = cursor.curvature_ahead(&path, lead);
+                // Where a piece begins either is right.
+                let beside = cursor.curvature_ahead(&path, lead - metres(0.002));
+                assert!(
+                    got == seen || got == beside,
+                    "{tick}, {lead:?}: {got:?}, {seen:?}"
+                );
+                changes += u32::from(got != cursor.curvature_ahead(&path, Metres::ZERO));
+            }
+        }
+        cursor.skip(&path, metres(0.047));
+    }
+    assert!(changes > 500, "{changes}");
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! The cursor: how far along the path the robot is. It moves forward only, and looks at no more than [`LOOK`] pieces
 //! in one tick, so a path that crosses itself or comes back past itself cannot confuse it.
 
-use super::ahead::Ahead;
 use super::local::Local;
 use super::path::{Path, next};
-use super::preview::{Allowed, CORNER, Preview};
+use super::preview::{Allowed, Preview};
+use super::track::Track;
 use crate::geometry::{Point, Pose, square};
-use crate::units::{Angle, Metres, MetresPerSecond, PerMetre};
+use crate::units::{Metres, MetresPerSecond, PerMetre};
 use fixed::types::I16F16;
 
 /// The most pieces that one tick looks at. Points closer than a thirty-second of what the robot drives in a tick
@@ -145,28 +145,23 @@ impl Cursor {
         }
     }
 
-    /// Places along the path ahead, `spacing` apart; the first is the cursor's.
-    pub fn ahead<'a>(&self, path: &Path<'a>, spacing: Metres) -> Ahead<'a> {
-        Ahead::new(path, self.piece, self.along, spacing)
+    /// Its place, to go on along the path from.
+    pub fn track(&self) -> Track {
+        Track::new(self.piece, self.along)
     }
 
-    /// Way to the next corner, a jump of the tangent by more than 15°, and the jump, left positive; none within `reach` or
-    /// [`LOOK`] pieces.
-    pub fn corner_ahead(&self, path: &Path<'_>, reach: Metres) -> Option<(Metres, Angle)> {
-        let mut piece = path.piece(self.piece);
-        let mut index = self.piece;
-        let mut way = piece.length() - self.along;
-        for _ in 0..LOOK {
-            let next = next(path, index).filter(|_| way <= reach)?;
-            let after = path.piece(next);
-            let jump = after.start_heading() - piece.end_heading();
-            if jump.abs().bits() > CORNER.bits() {
-                return Some((way, jump));
-            }
-            way = way + after.length();
-            (piece, index) = (after, next);
-        }
-        None
+    /// Way along the path since the start, metres with 16 fractional bits; wraps.
+    pub fn driven(&self) -> i32 {
+        self.driven.wrapping_add(self.along.bits())
+    }
+
+    /// The piece that it is on, and where that ends, as [`Cursor::driven`] counts.
+    pub(super) fn piece_end(&self, path: &Path<'_>) -> (usize, i32) {
+        let length = match &self.local {
+            Some(local) => local.length,
+            None => path.piece(self.piece).length(),
+        };
+        (self.piece, self.driven.wrapping_add(length.bits()))
     }
 
     /// Curvature `lead` metres ahead of the cursor.
@@ -202,7 +197,7 @@ impl Cursor {
         lateral: I16F16,
         corner: Metres,
     ) -> u64 {
-        let here = self.driven.wrapping_add(self.along.bits());
+        let here = self.driven();
         let allowed = Allowed {
             top,
             braking,

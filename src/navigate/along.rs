@@ -1,6 +1,7 @@
 //! A path's part of a tick: where the robot is on it, whether it is free, where to meet it again, and what a follower does
 //! before a bend begins.
 
+use super::places::{PLACES, SPACING};
 use super::steps::{Steps, Vector};
 use super::{Course, Navigator, NavigatorParams, Setup};
 use crate::geometry::{Pose, root};
@@ -11,9 +12,6 @@ use crate::units::{Metres, PerMetre, Seconds};
 
 /// Ticks without contradiction after which a path counts as free.
 const QUIET: u16 = 5;
-
-/// Distance of the places of a path that are compared with what is known.
-const SPACING: Metres = Metres::lit("0.25");
 
 /// Places from the first free one behind what stands on a path to the carrot.
 const BEHIND: usize = 3;
@@ -45,29 +43,31 @@ impl<const N: usize> Navigator<N> {
         let reach = setup.outline.half_width + Steps::of(p.supervisor.path_margin);
         let frame = ahead.frame();
         let mut short = guidance.foot;
-        let mut far = Metres::ZERO;
         let mut carrot = guidance.foot;
         let look = self.look(setup).metres() + const { Metres::lit("0.2") };
         // The place ahead that is nearest to the robot, where that is nearer than the cursor.
         let mut nearest = ((guidance.foot - pose.at).norm_squared(), Metres::ZERO);
-        let mut places = heapless::Vec::<Vector, 16>::new();
-        for place in self.cursor.ahead(path, SPACING) {
-            carrot = place.at;
+        let mut places = heapless::Vec::<Vector, PLACES>::new();
+        self.places.follow(path, &self.cursor, look);
+        let first = self.places.way(&self.cursor);
+        let mut far = first;
+        for place in self.places.as_slice() {
+            carrot = *place;
             if far <= const { Metres::lit("0.7") } {
-                short = place.at;
+                short = *place;
             }
-            let away = (place.at - pose.at).norm_squared();
+            let away = (*place - pose.at).norm_squared();
             if away < nearest.0 {
                 nearest = (away, far);
             }
-            let body = Vector::of(frame.to_body(place.at));
+            let body = Vector::of(frame.to_body(*place));
             far = far + SPACING;
             if places.push(body).is_err() || far > look {
                 break;
             }
         }
         let mut touched = self.near.touching(&places, reach);
-        far = Metres::ZERO;
+        far = first;
         // Where something stands on the path, it is met again soon behind that.
         let behind = usize::try_from(32u32.wrapping_sub(touched.leading_zeros())).unwrap_or(0);
         if touched != 0
@@ -110,7 +110,8 @@ impl<const N: usize> Navigator<N> {
     /// Turns early: the cursor goes on to a corner when half of the turn there takes as long as the way to it.
     fn cut_corner(&mut self, p: &NavigatorParams<N>, path: &Path<'_>) {
         let reach = const { Metres::lit("1") };
-        let Some((way, jump)) = self.cursor.corner_ahead(path, reach) else {
+        self.bends.follow(path, &self.cursor, reach);
+        let Some((way, jump)) = self.bends.corner(&self.cursor, reach) else {
             return;
         };
         // Speeding up for half of the angle Δ and slowing down for the other takes twice √(Δ/a).
@@ -128,7 +129,7 @@ impl<const N: usize> Navigator<N> {
     /// Curvature to steer by: where it changes, that of the place that is reached when half of the change is made.
     fn bend_ahead(&self, p: &NavigatorParams<N>, path: &Path<'_>, guidance: &Guidance) -> PerMetre {
         let speed = self.last.linear.abs();
-        let soon = |time: Seconds| self.cursor.curvature_ahead(path, speed.over(time));
+        let soon = |time: Seconds| self.bends.curvature(path, &self.cursor, speed.over(time));
         let most = const { Seconds::lit("0.3") };
         let change = speed.on_arc((soon(most) - guidance.curvature).abs());
         if change.bits() == 0 {

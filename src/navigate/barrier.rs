@@ -86,8 +86,8 @@ pub fn slow(
         if same || speed == Steps::ZERO {
             continue;
         }
-        way.bend(arc, backward, looked);
-        let free = way.free(near, outline, Steps::of(params.margin));
+        let step = way.bend(arc, backward, looked);
+        let free = way.free(near, outline, Steps::of(params.margin), step);
         if free >= looked {
             continue;
         }
@@ -169,7 +169,7 @@ pub fn gate(
     let mut way = Trajectory::new();
     let mut passes = |twist: Twist| {
         way.brake(driven, twist, brakes);
-        way.contact(near, outline, margin).is_none()
+        !way.touches(near, outline, margin)
     };
     if passes(wanted) {
         return Guarded {

@@ -4,10 +4,10 @@
 
 use super::footprint::Outline;
 use super::sensors::{Echo, Eyes};
-use super::steps::{Bearing, Steps};
+use super::steps::Steps;
 use crate::geometry::root;
 use crate::params::ParamError;
-use crate::units::{Angle, MetresPerSecond, Seconds};
+use crate::units::{MetresPerSecond, Seconds};
 use fixed::types::I16F16;
 
 /// The settings.
@@ -50,18 +50,12 @@ impl DoubtParams {
         speed: MetresPerSecond,
         reaction: Seconds,
     ) -> MetresPerSecond {
-        const ASIDE: Angle = Angle::deg("60");
         let mut nearest = Steps::MAX;
         for (eye, echo) in eyes.as_slice().iter().zip(echoes) {
-            let Echo::Across(range) = *echo else { continue };
-            let heading = eye.heading.abs();
-            if heading.bits() > ASIDE.bits() {
+            let (Echo::Across(range), Some(direction)) = (*echo, eye.ahead) else {
                 continue;
-            }
-            // The place of the arc that is nearest to straight ahead.
-            let half = Angle::from_bits(eye.width.bits() >> 1);
-            let off = Angle::from_bits((heading - half).bits().max(0));
-            let across = Bearing::of(off).ahead(range);
+            };
+            let across = direction.ahead(range);
             let beside = if eye.heading.is_left() {
                 across.y
             } else {

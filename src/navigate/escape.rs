@@ -12,18 +12,44 @@ use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
 const SPEED: MetresPerSecond = MetresPerSecond::lit("0.28");
 /// Yaw rate in place.
 const TURN: RadiansPerSecond = RadiansPerSecond::lit("1");
-/// Ticks for which a choice is kept.
-const KEPT: u8 = 8;
+/// Ticks for which a choice is kept before the next one is thought about; that takes three more.
+const KEPT: u8 = 5;
+/// Arcs that are looked along in a tick: each costs as much as half a guard.
+const AT_ONCE: u8 = 2;
 /// How far an arc is looked along.
 const LOOK: Steps = Steps::lit("0.35");
 /// An arc that is free for less is none.
 const LEAST: Steps = Steps::lit("0.05");
+
+/// The arcs: backward or forward, and how they bend.
+const ARCS: [(bool, PerMetre); 6] = {
+    let bend = PerMetre::lit("2");
+    let other = PerMetre::lit("-2");
+    [
+        (true, PerMetre::ZERO),
+        (true, bend),
+        (true, other),
+        (false, PerMetre::ZERO),
+        (false, bend),
+        (false, other),
+    ]
+};
+
+/// An arc that can be driven, and what it is worth.
+type Choice = Option<(i32, Twist)>;
 
 /// The choice that is being driven.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Escape {
     twist: Twist,
     left: u8,
+    /// Arcs looked along for the next choice.
+    looked: u8,
+    /// The best of them, and of those that go on the way of the last choice.
+    best: Choice,
+    on: Choice,
+    /// Arcs were looked along in this tick.
+    pub worked: bool,
 }
 
 impl Escape {
@@ -32,10 +58,15 @@ impl Escape {
         Self {
             twist: Twist::REST,
             left: 0,
+            looked: 0,
+            best: None,
+            on: None,
+            worked: false,
         }
     }
 
-    /// The motion to escape by; chosen anew every few ticks. `direction` is the one to get to, body frame.
+    /// The motion to escape by; chosen anew every few ticks. `direction` is the one to get to, body frame. The first choice
+    /// is thought about at rest, others while the last one is driven.
     pub fn drive(
         &mut self,
         near: &Near,
@@ -44,23 +75,51 @@ impl Escape {
         margin: Metres,
         direction: Angle,
     ) -> Twist {
+        self.worked = false;
         if let Some(left) = self.left.checked_sub(1) {
             self.left = left;
             return self.twist;
         }
-        self.left = KEPT.saturating_sub(1);
-        let backward = self.twist.linear < MetresPerSecond::ZERO;
-        let forward = self.twist.linear > MetresPerSecond::ZERO;
-        let margin = Steps::of(margin);
-        let best =
-            |backward, forward| best_arc(near, outline, margin, direction, (backward, forward));
-        // On the way of the last choice as long as it goes on: a robot that goes to and fro leaves nothing.
-        let on = if backward || forward {
-            best(backward, forward)
-        } else {
-            None
+        self.worked = true;
+        for _ in 0..AT_ONCE {
+            let Some((backward, curvature)) = ARCS.get(usize::from(self.looked)) else {
+                break;
+            };
+            self.looked = self.looked.wrapping_add(1);
+            let choice = arc(
+                near,
+                outline,
+                Steps::of(margin),
+                direction,
+                (*backward, *curvature),
+            );
+            let better = |known: Choice| match (known, choice) {
+                (Some((known, _)), Some((worth, _))) => worth > known,
+                (None, Some(_)) => true,
+                _ => false,
+            };
+            if better(self.best) {
+                self.best = choice;
+            }
+            // On the way of the last choice as long as it goes on: a robot that goes to and fro leaves nothing.
+            let goes_on = match self.twist.linear {
+                speed if speed < MetresPerSecond::ZERO => *backward,
+                speed => speed > MetresPerSecond::ZERO && !*backward,
+            };
+            if goes_on && better(self.on) {
+                self.on = choice;
+            }
+        }
+        if usize::from(self.looked) < ARCS.len() {
+            return self.twist;
+        }
+        let choice = self.on.or(self.best);
+        *self = Self {
+            twist: choice.map_or_else(|| turn(map), |(_, twist)| twist),
+            left: KEPT,
+            worked: true,
+            ..Self::new()
         };
-        self.twist = on.or_else(|| best(true, true)).unwrap_or_else(|| turn(map));
         self.twist
     }
 
@@ -70,51 +129,31 @@ impl Escape {
     }
 }
 
-/// The arc that is free longest, one that leads towards the direction counting up to three times; none if all that may be
-/// driven are blocked at once.
-fn best_arc(
+/// An arc: worth the length that is free of it, up to three times if it leads towards the direction; none if it is blocked
+/// at once.
+fn arc(
     near: &Near,
     outline: &Outline,
     margin: Steps,
     direction: Angle,
-    (may_backward, may_forward): (bool, bool),
-) -> Option<Twist> {
-    let bend = const { PerMetre::lit("2") };
-    let mut best = None::<(i32, Twist)>;
+    (backward, curvature): (bool, PerMetre),
+) -> Choice {
     let mut way = Trajectory::new();
-    for (backward, curvature) in [
-        (true, PerMetre::ZERO),
-        (true, bend),
-        (true, -bend),
-        (false, PerMetre::ZERO),
-        (false, bend),
-        (false, -bend),
-    ] {
-        if !(if backward { may_backward } else { may_forward }) {
-            continue;
-        }
-        way.bend(curvature, backward, LOOK);
-        let free = way.free(near, outline, margin);
-        if free < LEAST {
-            continue;
-        }
-        way.bend(curvature, backward, free);
-        let (cos, _) = (way.end().direction() - direction).cos_sin();
-        // 2 to 6 quarters.
-        let toward = 4i32.wrapping_add(cos.to_bits() >> 29);
-        let worth = free.bits().wrapping_mul(toward);
-        if best.is_none_or(|(known, _)| worth > known) {
-            let linear = if backward { -SPEED } else { SPEED };
-            best = Some((
-                worth,
-                Twist {
-                    linear,
-                    angular: linear.on_arc(curvature),
-                },
-            ));
-        }
+    let step = way.bend(curvature, backward, LOOK);
+    let free = way.free(near, outline, margin, step);
+    if free < LEAST {
+        return None;
     }
-    best.map(|(_, twist)| twist)
+    way.bend(curvature, backward, free);
+    let (cos, _) = (way.end().direction() - direction).cos_sin();
+    // 2 to 6 quarters.
+    let toward = 4i32.wrapping_add(cos.to_bits() >> 29);
+    let linear = if backward { -SPEED } else { SPEED };
+    let twist = Twist {
+        linear,
+        angular: linear.on_arc(curvature),
+    };
+    Some((free.bits().wrapping_mul(toward), twist))
 }
 
 /// In place, to the side with more room.

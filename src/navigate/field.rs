@@ -2,51 +2,52 @@
 //! met.
 //!
 //! 32 × 32 [cells](grid). A cell near a remembered point is [dear](costs), never forbidden: a gap that is closed only by
-//! uncertainty stays possible at a price. What was never seen counts as free; beyond the grid the way is straight. The
-//! [search] ends at the carrot or at the border; where its way passes a little ahead of the robot lies the guide point.
+//! uncertainty stays possible at a price. What was never seen counts as free; beyond the grid the way is straight. A
+//! [wave] spreads from the carrot to the robot; where the way that it came passes a little ahead of the robot lies the
+//! guide point.
 //!
-//! The work is cut into slices: a tick does no more than its budget, and a new field is ready after a few ticks. A way is
-//! kept until it is old, its end has moved, or a point appears near it; meanwhile the guide point runs along it
-//! ahead of the robot.
+//! The work is cut into slices: a tick does no more than its budget and what the tick's other parts leave, and a new field is
+//! ready after two or three ticks. A way is kept until it is old, its end has moved, or a point appears near it;
+//! meanwhile the guide point runs along it ahead of the robot.
 
 mod costs;
 mod grid;
-mod search;
+mod wave;
 mod way;
 
 pub use costs::Costs;
 
 use super::digest::Digest;
 use super::memory::Memory;
-use super::steps::{Steps, Vector};
+use super::steps::Vector;
 use crate::geometry::{Point, square};
 use crate::params::ParamError;
 use crate::units::{Angle, Metres};
-use costs::Shunned;
+use costs::{Shunned, nest};
 use fixed::types::I16F16;
-use grid::{CELL, CELL_METRES, CELLS, FREE, SIDE};
+use grid::{CELL_METRES, Frame, Ground, LEVELS, ROWS};
 use heapless::Vec;
-use search::Search;
-use way::{KEPT, Way};
+use wave::Wave;
+use way::Way;
 
 /// The field's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldParams {
     /// Within this of a point a cell costs `wall` and more.
     pub wall_distance: Metres,
-    /// Factor at the wall's edge, up to 31; at the point itself it is twice that.
+    /// Factor of a wall's cell, rounded; 1 to 120.
     pub wall: I16F16,
     /// A halo this much farther out still costs more than a free cell; both together up to 0.45 m.
     pub halo_distance: Metres,
-    /// Factor above one at the halo's inner edge.
+    /// Factor above one at the halo's inner edge, falling to nothing at its outer one; then rounded to ½ or 2.
     pub halo: I16F16,
-    /// How far the field is descended to the guide point; up to 2 m.
+    /// How far along the way the guide point lies; up to 1.2 m.
     pub ahead: Metres,
     /// Where the straight way to the carrot is free and within this of the field's direction, it is taken instead.
     pub straight: Angle,
     /// Cost added to the cells of a place where the robot got stuck, in quarters of a free cell's; twice that the next time.
     pub shun: u8,
-    /// Cells settled in a tick (or as much other work); 8 or more.
+    /// Work in a tick, in units of about 150 instructions on a Cortex-M4; 8 or more.
     pub budget: u16,
     /// Ticks after which a way is looked for anew, whatever happens.
     pub refresh: u8,
@@ -69,9 +70,9 @@ impl FieldParams {
                 "above 0, together up to 0.45 m",
             ),
             (
-                (1 << 16..=31 << 16).contains(&self.wall.to_bits()),
+                (1 << 16..=120 << 16).contains(&self.wall.to_bits()),
                 "field.wall",
-                "1 to 31",
+                "1 to 120",
             ),
             (
                 (0..=31 << 16).contains(&self.halo.to_bits()),
@@ -79,9 +80,10 @@ impl FieldParams {
                 "0 to 31",
             ),
             (
-                (const { Metres::lit("0.15") }..=const { Metres::lit("2") }).contains(&self.ahead),
+                (const { Metres::lit("0.15") }..=const { Metres::lit("1.2") })
+                    .contains(&self.ahead),
                 "field.ahead",
-                "0.15 to 2 m",
+                "0.15 to 1.2 m",
             ),
             (self.budget >= 8, "field.budget", "8 or more"),
         ];
@@ -99,29 +101,26 @@ enum Phase {
     Idle,
     /// Entering the points, from this one on.
     Stamp(u16),
-    /// Searching.
-    Search,
-    /// Following the way found back to the robot, from this cell on.
-    Trace(u16),
+    /// Spreading the wave.
+    Spread,
 }
 
 /// The field.
 #[derive(Clone, Debug)]
 pub struct Field {
-    cost: [u8; CELLS],
-    search: Search,
-    /// World: the robot when the field was begun, the corner of the first cell, and the carrot.
+    ground: Ground,
+    wave: Wave,
+    /// The robot when the field was begun, where the grid lies, and the carrot.
     robot: Point,
-    corner: Point,
+    frame: Frame,
     carrot: Point,
     phase: Phase,
-    /// The cells that were passed last on the way back, and how many there were in all.
-    traced: [u16; KEPT],
-    passed: u16,
     /// The last field's answer.
     way: Option<Way>,
     /// Ticks since it was begun; saturates.
     age: u8,
+    /// The way may have become another.
+    doubtful: bool,
     /// What was noticed since.
     noticed: Vec<Point, 4>,
     shunned: Shunned,
@@ -138,16 +137,15 @@ impl Field {
     pub const fn new() -> Self {
         const ORIGIN: Point = Point::new(Metres::ZERO, Metres::ZERO);
         Self {
-            cost: [FREE; CELLS],
-            search: Search::new(),
+            ground: [[0; LEVELS]; ROWS],
+            wave: Wave::new(),
             robot: ORIGIN,
-            corner: ORIGIN,
+            frame: Frame::NONE,
             carrot: ORIGIN,
             phase: Phase::Idle,
-            traced: [0; KEPT],
-            passed: 0,
             way: None,
             age: u8::MAX,
+            doubtful: false,
             noticed: Vec::new(),
             shunned: Shunned::new(),
         }
@@ -156,7 +154,7 @@ impl Field {
     /// Makes a place of the world dear for a while.
     pub fn shun(&mut self, params: &FieldParams, at: Point) {
         self.shunned.add(params.shun, at);
-        self.age = u8::MAX;
+        self.doubtful = true;
     }
 
     /// Shuns no place any more.
@@ -174,9 +172,7 @@ impl Field {
     pub fn notice(&mut self, at: Point) {
         // What is under way does not know of it any more, and which way it will find is not known yet.
         let late = self.phase != Phase::Idle && self.noticed.push(at).is_err();
-        if late || self.way.as_ref().is_some_and(|way| way.passes(at)) {
-            self.age = u8::MAX;
-        }
+        self.doubtful |= late || self.way.as_ref().is_some_and(|way| way.passes(at));
     }
 
     /// The point to head for, world; none before the first field is ready.
@@ -185,9 +181,13 @@ impl Field {
     }
 
     pub(super) fn digest(&self, digest: &mut Digest) {
-        for (cost, way) in self.cost.iter().zip(self.search.ways()) {
-            digest.word(u32::from(*cost) << 16 | u32::from(*way));
+        for (levels, reached) in self.ground.iter().zip(self.wave.reached()) {
+            for level in levels {
+                digest.word(*level);
+            }
+            digest.word(*reached);
         }
+        digest.word(self.wave.round().into());
         if let Some(way) = &self.way {
             digest.point(way.robot);
             digest.point(way.carrot);
@@ -195,41 +195,36 @@ impl Field {
         digest.word(u32::from(self.age) << 16 | self.shunned.len() as u32);
     }
 
-    /// A slice of work. Returns whether a field was finished.
+    /// A slice of work, of up to so many [units](FieldParams::budget). Returns whether a field was finished.
     pub fn work(
         &mut self,
         params: &FieldParams,
+        left: i32,
         costs: &Costs,
         memory: &Memory,
         robot: Point,
         carrot: Point,
     ) -> bool {
-        let mut budget = i32::from(params.budget);
+        let mut budget = left.min(params.budget.into());
         self.age = self.age.saturating_add(1);
         if self.phase == Phase::Idle && !self.is_stale(params, carrot) {
             return false;
         }
-        // Every pass spends budget or moves on to the next of four phases.
-        for _ in 0..4 {
+        // Every pass spends budget or moves on to the next of three phases.
+        for _ in 0..3 {
             match self.phase {
                 Phase::Idle => {
                     self.age = 0;
+                    self.doubtful = false;
                     self.noticed.clear();
                     self.begin(robot, carrot);
                     self.phase = Phase::Stamp(0);
-                    // As much as filling the arrays takes.
-                    budget = budget.wrapping_sub(16);
+                    budget = budget.wrapping_sub(6);
                 }
                 Phase::Stamp(first) => self.stamp(costs, memory, first, &mut budget),
-                Phase::Search => {
-                    if self.search.spread(&self.cost, &mut budget) {
-                        self.passed = 0;
-                        self.phase = self.search.end().map_or(Phase::Idle, Phase::Trace);
-                    }
-                }
-                Phase::Trace(cell) => {
-                    if self.trace(cell, &mut budget) {
-                        self.arrive();
+                Phase::Spread => {
+                    if self.wave.spread(&self.ground, costs.wall, &mut budget) {
+                        self.arrive(params);
                         self.phase = Phase::Idle;
                         return true;
                     }
@@ -245,68 +240,54 @@ impl Field {
     /// Whether a new way is to be looked for.
     fn is_stale(&self, params: &FieldParams, carrot: Point) -> bool {
         const MOVED: Metres = Metres::lit("0.25");
+        /// Ticks from one field to the next that are enough for what is noticed: it comes in bursts.
+        const SOON: u8 = 3;
+        let moved = |way: &Way| (way.carrot - carrot).norm_squared() > square(MOVED);
         self.age >= params.refresh
-            || self
-                .way
-                .as_ref()
-                .is_none_or(|way| (way.carrot - carrot).norm_squared() > square(MOVED))
+            || self.way.as_ref().is_none_or(moved)
+            || (self.doubtful && self.age >= SOON)
     }
 
     fn begin(&mut self, robot: Point, carrot: Point) {
-        let half = Steps::from_bits(CELL.bits().wrapping_mul(SIDE as i32 / 2)) + CELL.half();
-        let half = half.metres();
-        self.cost = [FREE; CELLS];
+        self.ground = [[0; LEVELS]; ROWS];
         self.robot = robot;
-        self.corner = robot - Point::new(half, half);
+        self.frame = Frame::around(robot, carrot);
         self.carrot = carrot;
-        let off = carrot - self.corner;
         const SIXTEENTH: i32 = CELL_METRES.bits() / 16;
-        self.search
-            .begin((off.x.bits() / SIXTEENTH, off.y.bits() / SIXTEENTH));
+        let off = carrot - self.frame.to_world(Vector::ZERO);
+        let sixteenths = |off: Metres| (off.bits() / SIXTEENTH).clamp(-1 << 15, 1 << 15);
+        self.wave
+            .begin(self.frame.axes(sixteenths(off.x), sixteenths(off.y)));
     }
 
     fn stamp(&mut self, costs: &Costs, memory: &Memory, first: u16, budget: &mut i32) {
+        // Points change places in their list from tick to tick: one may be missed, until the next field.
+        let origin = self.frame.to_grid(memory.to_world(Vector::ZERO));
         let mut index = first;
         while *budget > 0 {
             let Some(point) = memory.local(index.into()) else {
-                self.shunned.stamp(&mut self.cost, self.corner);
-                *budget = budget.wrapping_sub((self.shunned.len() as i32).wrapping_mul(9));
-                self.phase = Phase::Search;
+                self.shunned.stamp(&mut self.ground, self.frame);
+                nest(&mut self.ground);
+                let shunned = self.shunned.len() as i32;
+                *budget = budget.wrapping_sub(shunned.wrapping_mul(12).wrapping_add(4));
+                self.phase = Phase::Spread;
                 return;
             };
-            let place = Vector::of(memory.to_world(point) - self.corner);
-            costs.stamp(&mut self.cost, place);
+            let (x, y) = self.frame.axes(point.x, point.y);
+            costs.stamp(&mut self.ground, Vector::new(x, y) + origin);
             index = index.wrapping_add(1);
-            *budget = budget.wrapping_sub(3);
+            *budget = budget.wrapping_sub(1);
         }
         self.phase = Phase::Stamp(index);
     }
 
-    /// Goes back along the way found. Returns whether the robot is reached.
-    fn trace(&mut self, from: u16, budget: &mut i32) -> bool {
-        let mut cell = from;
-        while *budget > 0 {
-            let Some(before) = self.search.before(&self.cost, cell) else {
-                return true;
-            };
-            self.traced[usize::from(self.passed) & (KEPT - 1)] = cell;
-            self.passed = self.passed.wrapping_add(1);
-            cell = before;
-            *budget = budget.wrapping_sub(2);
-        }
-        self.phase = Phase::Trace(cell);
-        false
-    }
-
-    /// Takes over the way that was gone back.
-    fn arrive(&mut self) {
+    /// Takes over the way found.
+    fn arrive(&mut self, params: &FieldParams) {
         let way = self.way.get_or_insert(const { Way::new() });
         way.robot = self.robot;
-        way.corner = self.corner;
+        way.frame = self.frame;
         way.carrot = self.carrot;
-        way.take(&self.traced, self.passed, |cell| self.search.is_exit(cell));
-        if self.noticed.iter().any(|at| way.passes(*at)) {
-            self.age = u8::MAX;
-        }
+        way.take(params, self.wave.way(), |cell| self.wave.is_source(cell));
+        self.doubtful |= self.noticed.iter().any(|at| way.passes(*at));
     }
 }

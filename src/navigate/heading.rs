@@ -120,9 +120,11 @@ pub fn choose(
     consider(&mut costs, wanted_sector);
     consider(&mut costs, sector_of(wanted.last));
     let mut most = consider(&mut costs, 0);
+    let points = near.spots().len() as u32;
+    let enough = ENOUGH.min(ENOUGH_POINTS.checked_div(points).unwrap_or(ENOUGH));
     for step in 1..=SECTORS / 2 {
         let least_off = Angle::from_bits(((step as i32) << 26).wrapping_sub(1 << 25));
-        if Weights::angle(weights.toward, least_off) >= most || costs.map.looked() >= ENOUGH {
+        if Weights::angle(weights.toward, least_off) >= most || costs.map.looked() >= enough {
             break;
         }
         consider(&mut costs, wanted_sector.wrapping_add(step) & (SECTORS - 1));
@@ -137,8 +139,9 @@ pub fn choose(
     })
 }
 
-/// When so many sectors were looked along, the best one so far has to do: that bounds a tick.
-const ENOUGH: u32 = 24;
+/// When so many sectors were looked along, the best one so far has to do: that bounds a tick. Fewer where many points are near.
+const ENOUGH: u32 = 16;
+const ENOUGH_POINTS: u32 = 640;
 
 /// The sector that an angle lies in.
 fn sector_of(angle: Angle) -> usize {

@@ -6,8 +6,8 @@
 //! arc is carved away and the right part stays. A silent sensor neither disproves nor supports: if it is dead, nothing is
 //! lost.
 //!
-//! Cost: one pass over the points, each in the view of one to three sensors (of all, if they do not share a place),
-//! and at most five new points a sensor. When the memory is full a new point takes the place of one that is farther away, of
+//! Cost: one pass over the points, each in the view of one to three sensors (of all, if they do not share a place), and at
+//! most five new points a sensor. What is far and what no sensor saw is looked at in every fourth tick only. When the memory is full a new point takes the place of one that is farther away, of
 //! eight that are looked at.
 
 mod judge;
@@ -21,10 +21,10 @@ use crate::geometry::{Point, Pose};
 use crate::units::{Metres, MetresPerSecond};
 use fixed::types::I16F16;
 use heapless::Vec;
-use judge::Judge;
+use judge::{Judge, UNSEEN};
 
-/// The most points; a power of two.
-pub const CAPACITY: usize = 128;
+/// The most points.
+pub const CAPACITY: usize = 96;
 
 /// The memory's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,12 @@ struct Record {
     /// When it was last supported, in units of [`UNIT`] ticks; wraps.
     seen: u8,
     confidence: u8,
+    /// The sensor that it was last seen by, and whether it was not the last time.
+    eye: u8,
 }
+
+/// Points behind the robot matter less: by so much the circle that is looked at lies ahead.
+const AHEAD: Steps = Steps::lit("0.35");
 
 /// Ticks in a unit of a record's time, as a power of two: 256 units are more than any lifetime.
 const UNIT: u32 = 4;
@@ -108,7 +113,9 @@ impl Memory {
 
     /// The points, body frame of the last update.
     pub fn points(&self) -> impl Iterator<Item = Vector> + '_ {
-        self.seen_from(Motion::default(), Steps::MAX)
+        self.records
+            .iter()
+            .map(|record| (record.at() - self.body).in_frame(self.forward))
     }
 
     /// The point with this index in the frame of [`Memory::to_local`].
@@ -136,7 +143,8 @@ impl Memory {
         digest.word(self.looked as u32);
     }
 
-    /// The points closer than `look` to a body that has moved by `moved` since the last update, in its frame.
+    /// The points up to `look` ahead of a body that has moved by `moved` since the last update, in its frame: those in the
+    /// circle that ends there, [`AHEAD`] of its middle.
     pub(super) fn seen_from(
         &self,
         moved: Motion,
@@ -144,10 +152,11 @@ impl Memory {
     ) -> impl Iterator<Item = Vector> + '_ {
         let body = self.body + moved.by.turned(self.forward);
         let turn = self.forward.turned(moved.turn);
-        let look = look.squared();
+        let middle = body + turn.ahead(AHEAD);
+        let look = (look - AHEAD).squared();
         self.records.iter().filter_map(move |record| {
-            let away = record.at() - body;
-            (away.norm_squared() < look).then(|| away.in_frame(turn))
+            let at = record.at();
+            ((at - middle).norm_squared() < look).then(|| (at - body).in_frame(turn))
         })
     }
 
@@ -172,7 +181,7 @@ impl Memory {
             let known = explained >> index & 1 == 1;
             if !known
                 && echo.range().is_some_and(|range| range <= farthest)
-                && let Some(at) = self.insert_arc(eye, *echo)
+                && let Some(at) = self.insert_arc(eye, index as u8, *echo)
             {
                 new(at);
             }
@@ -180,7 +189,7 @@ impl Memory {
     }
 
     /// Assumes that something stands at a range across a sensor's cone, unless a point there says so already.
-    pub(super) fn assume(&mut self, params: &MemoryParams, eye: &Eye, range: Steps) {
+    pub(super) fn assume(&mut self, params: &MemoryParams, index: u8, eye: &Eye, range: Steps) {
         let support = Steps::of(params.support);
         let known = self.points().any(|place| {
             let from_eye = place - eye.at;
@@ -188,7 +197,7 @@ impl Memory {
             eye.view(from_eye).0 != View::Outside && off.abs() < support
         });
         if !known {
-            self.insert_arc(eye, Echo::Across(range));
+            self.insert_arc(eye, index, Echo::Across(range));
         }
     }
 
@@ -198,7 +207,8 @@ impl Memory {
         let (body, forward) = (self.body, self.forward);
         retain(&mut self.records, |record| {
             let place = (record.at() - body).in_frame(forward);
-            outline.clearance(place) < NEAR && eyes.seeing(place, |_, _, _, _| false)
+            outline.clearance_at_least(place) < NEAR
+                && eyes.seeing(place, &mut { record.eye & !UNSEEN }, |_, _, _, _| false)
         });
     }
 
@@ -224,14 +234,27 @@ impl Memory {
     /// Supports, disproves and drops points. Returns the sensors whose echo they explain, a bit each.
     fn judge<const N: usize>(&mut self, judge: &Judge<'_, N>) -> u32 {
         let mut explained = 0;
-        retain(&mut self.records, |record| {
-            judge.keeps(record, &mut explained)
-        });
+        let mut index = 0usize;
+        for turn in 0..CAPACITY as u32 {
+            let rests = turn.wrapping_add(self.tick) & 3 != 0;
+            let Some(record) = self.records.get_mut(index) else {
+                break;
+            };
+            if judge.keeps(record, &mut explained, rests) {
+                index = index.wrapping_add(1);
+                continue;
+            }
+            // The last one takes its place, and is next.
+            let last = self.records.pop();
+            if let (Some(place), Some(last)) = (self.records.get_mut(index), last) {
+                *place = last;
+            }
+        }
         explained
     }
 
     /// Fills the arc that an echo may come from. Returns its middle, world.
-    fn insert_arc(&mut self, eye: &Eye, echo: Echo) -> Option<Point> {
+    fn insert_arc(&mut self, eye: &Eye, index: u8, echo: Echo) -> Option<Point> {
         /// Points are at most so far apart, but five are the most.
         const SPACED: i32 = Steps::lit("0.073").bits();
         let (range, axis, count) = match echo {
@@ -246,22 +269,22 @@ impl Memory {
         let place = |turn: Bearing| body + (at + turn.ahead(range).turned(axis)).turned(forward);
         let middle = place(Bearing::AHEAD);
         if count != 2 {
-            self.insert(middle);
+            self.insert(middle, index);
         }
         if count >= 2 {
-            self.insert(place(eye.flank));
-            self.insert(place(eye.flank.mirrored()));
+            self.insert(place(eye.flank), index);
+            self.insert(place(eye.flank.mirrored()), index);
         }
         if count > 3 {
-            self.insert(place(eye.inner));
-            self.insert(place(eye.inner.mirrored()));
+            self.insert(place(eye.inner), index);
+            self.insert(place(eye.inner.mirrored()), index);
         }
         Some(self.to_world(middle))
     }
 
-    fn insert(&mut self, place: Vector) {
+    fn insert(&mut self, place: Vector, eye: u8) {
         let seen = (self.tick >> UNIT) as u8;
-        let Some(record) = Record::new(place, seen) else {
+        let Some(record) = Record::new(place, seen, eye) else {
             return;
         };
         if self.records.push(record).is_err() {
@@ -275,7 +298,7 @@ impl Memory {
         let away = |record: &Record| (record.at() - self.body).norm_squared();
         let mut farthest = (away(&record), None);
         for _ in 0..LOOKED {
-            self.looked = self.looked.wrapping_add(1) & (CAPACITY - 1);
+            self.looked = self.looked.wrapping_add(1) % CAPACITY;
             let known = self.records.get(self.looked).map_or(0, away);
             if known > farthest.0 {
                 farthest = (known, Some(self.looked));
@@ -296,13 +319,14 @@ pub(super) fn insertion_range(params: &MemoryParams, speed: MetresPerSecond) -> 
 }
 
 impl Record {
-    fn new(place: Vector, seen: u8) -> Option<Self> {
-        let narrow = |steps: Steps| i16::try_from(steps.bits()).ok();
+    fn new(place: Vector, seen: u8, eye: u8) -> Option<Self> {
+        let [x, y] = narrow(place)?;
         Some(Self {
-            x: narrow(place.x)?,
-            y: narrow(place.y)?,
+            x,
+            y,
             seen,
             confidence: SURE,
+            eye,
         })
     }
 
@@ -313,21 +337,21 @@ impl Record {
         )
     }
 
-    fn move_to(&mut self, place: Vector) {
-        if let Some(new) = Self::new(place, self.seen) {
-            (self.x, self.y) = (new.x, new.y);
-        }
+    /// Puts it elsewhere, if that fits; whether it does.
+    fn move_to(&mut self, place: Vector) -> bool {
+        narrow(place)
+            .map(|[x, y]| (self.x, self.y) = (x, y))
+            .is_some()
     }
 
     /// Counted from an origin that moved; whether it still fits.
     fn shift(&mut self, moved: Vector) -> bool {
-        let place = self.at() - moved;
-        match Self::new(place, self.seen) {
-            Some(new) => {
-                (self.x, self.y) = (new.x, new.y);
-                true
-            }
-            None => false,
-        }
+        self.move_to(self.at() - moved)
     }
+}
+
+/// A place in sixteen bits, if they are enough.
+fn narrow(place: Vector) -> Option<[i16; 2]> {
+    let narrow = |steps: Steps| i16::try_from(steps.bits()).ok();
+    Some([narrow(place.x)?, narrow(place.y)?])
 }

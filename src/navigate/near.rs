@@ -8,8 +8,8 @@ use crate::signals::Twist;
 use crate::units::{Angle, Seconds};
 use heapless::Vec;
 
-/// The most points; if there are more, nearer ones win.
-pub const MAX_NEAR: usize = 128;
+/// The most points: as many as are remembered. If there are more, nearer ones win.
+pub const MAX_NEAR: usize = super::memory::CAPACITY;
 
 /// Points closer to the outline than this come first: they decide most questions.
 const CLOSE: i16 = Steps::lit("0.15").bits() as i16;
@@ -31,7 +31,7 @@ impl Spot {
         )
     }
 
-    /// Its distance from the outline.
+    /// Its distance from the outline, or up to a hundredth less.
     pub fn clearance(&self) -> Steps {
         Steps::from_bits(self.clearance.into())
     }
@@ -42,6 +42,10 @@ impl Spot {
 pub struct Near {
     spots: Vec<Spot, MAX_NEAR>,
     least: Steps,
+    /// Points closer than [`CLOSE`].
+    close: usize,
+    /// The point that was last looked at for its place.
+    looked: usize,
 }
 
 impl Near {
@@ -50,38 +54,49 @@ impl Near {
         Self {
             spots: Vec::new(),
             least: Steps::MAX,
+            close: 0,
+            looked: 0,
         }
     }
 
     /// Of `places`, in the frame of the body and within ±8 m.
     pub fn collect(&mut self, places: impl Iterator<Item = Vector>, outline: &Outline) {
         self.spots.clear();
-        self.least = Steps::MAX;
-        let mut close = 0usize;
         for place in places {
-            let clearance = outline.clearance(place);
-            self.least = self.least.min(clearance);
-            let narrow = |steps: Steps| steps.bits() as i16;
             let spot = Spot {
-                x: narrow(place.x),
-                y: narrow(place.y),
-                clearance: narrow(clearance),
+                x: place.x.bits() as i16,
+                y: place.y.bits() as i16,
+                clearance: 0,
             };
-            let next = self.spots.len();
-            let full = self.spots.push(spot).is_err();
-            if spot.clearance < CLOSE && !full {
-                // In place of the first one that is not close.
-                if let [earlier, .., last] = self.spots.get_mut(close..=next).unwrap_or_default() {
-                    core::mem::swap(earlier, last);
-                }
-                close = close.wrapping_add(1);
+            if self.spots.is_full() {
+                self.replace(spot);
+            } else {
+                // There is room.
+                let _ = self.spots.push(spot);
             }
-            if full
-                && let Some(farthest) = self.spots.iter_mut().max_by_key(|spot| spot.clearance)
-                && farthest.clearance > spot.clearance
-            {
-                *farthest = spot;
+        }
+        // Twice the same: the first one need not tell shapes apart for every point.
+        (self.least, self.close) = match outline.rectangle() {
+            Some(rectangle) => measure(&mut self.spots, |at| rectangle.clearance_at_least(at)),
+            None => measure(&mut self.spots, |at| outline.clearance_at_least(at)),
+        };
+    }
+
+    /// Puts a point in the place of one that is farther away: the farthest of a few, which are others the next time.
+    #[cold]
+    fn replace(&mut self, spot: Spot) {
+        const LOOKED: usize = 4;
+        let away = |spot: &Spot| spot.at().norm_squared();
+        let mut farthest = (away(&spot), None);
+        for _ in 0..LOOKED {
+            self.looked = self.looked.wrapping_add(1) % MAX_NEAR;
+            let known = self.spots.get(self.looked).map_or(0, away);
+            if known > farthest.0 {
+                farthest = (known, Some(self.looked));
             }
+        }
+        if let Some(place) = farthest.1.and_then(|index| self.spots.get_mut(index)) {
+            *place = spot;
         }
     }
 
@@ -96,7 +111,12 @@ impl Near {
         &self.spots
     }
 
-    /// Distance of the nearest point from the outline; 8 m if there is none.
+    /// How many points are so close that what is done there takes most of the work.
+    pub(super) fn close(&self) -> usize {
+        self.close
+    }
+
+    /// Distance of the nearest point from the outline, or up to a hundredth less; 8 m if there is none.
     pub fn clearance(&self) -> Steps {
         self.least
     }
@@ -144,6 +164,33 @@ impl Near {
             .unwrap_or(most)
             .min(most)
     }
+}
+
+/// Works out the clearances and puts the close points first. Returns the least clearance, and how many are close.
+#[inline(always)]
+fn measure(spots: &mut [Spot], clearance: impl Fn(Vector) -> Steps) -> (Steps, usize) {
+    let mut least = Steps::MAX;
+    let mut close = 0usize;
+    for index in 0..spots.len() {
+        let Some(spot) = spots.get_mut(index) else {
+            break;
+        };
+        let room = clearance(spot.at());
+        spot.clearance = room.bits() as i16;
+        least = least.min(room);
+        if spot.clearance < CLOSE {
+            let spot = *spot;
+            // In place of the first one that is not close.
+            if let Some(earlier) = spots.get_mut(close) {
+                let earlier = core::mem::replace(earlier, spot);
+                if let Some(place) = spots.get_mut(index) {
+                    *place = earlier;
+                }
+            }
+            close = close.wrapping_add(1);
+        }
+    }
+    (least, close)
 }
 
 /// How the body moves until what is decided now takes effect.

@@ -169,14 +169,27 @@ impl Widths {
         /// A point this far behind the front line is beside the robot, no more before it.
         const PASSED: Steps = Steps::lit("-0.12");
         let (mut hard, mut soft) = (self.look, self.look);
+        let [cos, sin] = direction.bits().map(i32::from);
+        // What is behind or too far ahead to matter goes by one product sum and one comparison. 14 more fractional bits.
+        let reach = |hard: i16| {
+            let reach = self.front.bits().wrapping_add(hard.into());
+            reach.wrapping_shl(14).cast_unsigned()
+        };
+        let mut most = reach(hard);
         for spot in near.spots() {
-            let place = spot.at().in_frame(direction);
-            let beside = place.y.abs();
-            if beside >= self.soft || place.x < Steps::ZERO {
+            let (x, y) = (spot.at().x.bits(), spot.at().y.bits());
+            let along = x.wrapping_mul(cos).wrapping_add(y.wrapping_mul(sin));
+            if along.cast_unsigned() >= most {
                 continue;
             }
-            let ahead = place.x - self.front;
-            if beside < self.hard {
+            let beside = y.wrapping_mul(cos).wrapping_sub(x.wrapping_mul(sin)) >> 14;
+            let beside = Steps::from_bits(beside.wrapping_abs());
+            if beside >= self.soft {
+                continue;
+            }
+            let ahead = Steps::from_bits(along >> 14) - self.front;
+            let narrow = beside < self.hard;
+            if narrow {
                 let stands_before = ahead > Steps::ZERO && ahead < self.least;
                 let grazes = beside <= self.graze || ahead == Steps::ZERO;
                 if stands_before || (ahead <= Steps::ZERO && ahead > PASSED && grazes) {
@@ -184,11 +197,12 @@ impl Widths {
                 }
             }
             if ahead > Steps::ZERO {
-                // Spots are within ±8 m.
+                // Less than the look range.
                 let free = ahead.bits() as i16;
                 soft = soft.min(free);
-                if beside < self.hard {
+                if narrow {
                     hard = hard.min(free);
+                    most = reach(hard);
                 }
             }
         }
@@ -219,7 +233,7 @@ fn room(near: &Near, outline: &Outline, margin: Steps, left: bool) -> Angle {
         while step <= free {
             let angle = Angle::from_bits(step.wrapping_shl(SECTOR_BITS - 1));
             let turn = Bearing::of(if left { angle } else { -angle });
-            let here = outline.clearance(spot.at().in_frame(turn));
+            let here = outline.clearance_at_least(spot.at().in_frame(turn));
             if here < margin && here < before {
                 free = step.wrapping_sub(1);
                 break;

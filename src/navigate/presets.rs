@@ -123,8 +123,8 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
             shun: 12,
-            budget: 240,
-            refresh: 6,
+            budget: 100,
+            refresh: 5,
         },
         heading: HeadingParams {
             least: m!("0.08"),

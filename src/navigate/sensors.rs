@@ -139,6 +139,9 @@ pub(super) struct Eye {
     pub flank: Bearing,
     pub inner: Bearing,
     pub filled: i32,
+    /// Direction of the place across its cone that is nearest to straight ahead, from the body's axis to its side; none if
+    /// the sensor looks more than [`Eye::ASIDE`] aside.
+    pub ahead: Option<Bearing>,
     /// Tangents of half the width and of 0.9 of that, 14 fractional bits.
     edge: i32,
     sure: i32,
@@ -155,14 +158,21 @@ pub(super) enum View {
     Sure,
 }
 
-/// No sensor's number.
-const BLIND: u8 = u8::MAX;
+/// The most sensors that are asked for a place on the way to one that sees it: a tick's turn is no more than a cone or two.
+const ASKED: usize = 3;
 
 impl Eye {
     /// A beam still sees this far to either side: what its own width and the robot's heading leave open.
     const BEAM: Angle = Angle::deg("1");
 
+    /// Sensors that look farther aside than this do not tell what stands ahead.
+    const ASIDE: Angle = Angle::deg("60");
+
     fn new(mount: &Mount, arc: I16F16) -> Self {
+        let aside = mount.pose.heading.abs();
+        let nearest = (aside - Angle::from_bits(mount.width.bits() >> 1))
+            .bits()
+            .max(0);
         let half = half_width(mount.width);
         let sure = Angle::from_bits((i64::from(half.bits()).wrapping_mul(9) / 10) as i32);
         let flank = Angle::from_bits(mount.width.bits() >> 1).scale(arc);
@@ -174,6 +184,8 @@ impl Eye {
             filled: (flank.radians().to_bits() >> 1).clamp(0, 1 << 15),
             heading: mount.pose.heading,
             width: mount.width,
+            ahead: (aside.bits() <= Self::ASIDE.bits())
+                .then(|| Bearing::of(Angle::from_bits(nearest))),
             edge: tangent(half),
             sure: tangent(sure),
         }
@@ -221,7 +233,7 @@ pub struct Eyes<const N: usize> {
     shared: bool,
     /// And their cones do not overlap.
     disjoint: bool,
-    /// Then: the sensor whose axis is nearest to the middle of each 64th of a turn, [`BLIND`] where none looks.
+    /// The sensor whose axis is nearest to the middle of each 64th of a turn.
     nearest: [u8; 64],
     max_range: Steps,
     max_age: Seconds,
@@ -257,13 +269,7 @@ impl<const N: usize> Eyes<N> {
             let middle = Angle::from_bits((sector << 26).wrapping_add(1 << 25));
             let off = |eye: &Eye| (eye.heading - middle).abs().bits();
             let best = (0..32u8).zip(&eyes).min_by_key(|(_, eye)| off(eye));
-            // A whole sector beside its middle: at a boundary a place may count to either.
-            let looks =
-                |eye: &Eye| off(eye) <= half_width(eye.width).bits().saturating_add(1 << 26);
-            *entry = match best {
-                Some((index, _)) if eyes.iter().any(looks) => index,
-                _ => BLIND,
-            };
+            *entry = best.map_or(0, |(index, _)| index);
         }
         Self {
             eyes,
@@ -280,12 +286,14 @@ impl<const N: usize> Eyes<N> {
     }
 
     /// Tells which sensors see a place, body frame: calls `see` with the index of each, where the place lies as seen from it,
-    /// and how, until it answers `false`. Where all share a place, those whose axes are nearest are asked, and
-    /// where no cones overlap, one is called at most. Answers what was answered last, else `true`.
+    /// and how, until it answers `false`; answers what was answered last, else `true`. Where all share a place the search
+    /// begins at `hint`, the one that saw it last time, goes to the neighbour on the place's side, [`ASKED`] sensors in all, and
+    /// leaves in `hint` where it came to; where no cones overlap, one is called at most, else both neighbours, too.
     #[inline(always)]
     pub(super) fn seeing(
         &self,
         place: Vector,
+        hint: &mut u8,
         mut see: impl FnMut(usize, &Eye, Vector, View) -> bool,
     ) -> bool {
         let mut ask = |index: usize, eye: &Eye, from_eye: Vector| -> (bool, Option<bool>) {
@@ -302,35 +310,41 @@ impl<const N: usize> Eyes<N> {
             });
         };
         let from_eye = place - eye.at;
-        let sector = from_eye.sector() as usize & (self.nearest.len() - 1);
-        let first = usize::from(self.nearest[sector]);
-        let Some(eye) = self.eyes.get(first) else {
-            return true;
-        };
-        let (left, seen) = ask(first, eye, from_eye);
-        if seen.is_some() && (self.disjoint || seen == Some(false)) {
-            return seen.unwrap_or(true);
-        }
-        // The axis nearest to the sector's middle may not be the nearest one: the neighbour to the place's side. Where
-        // cones overlap, the other one, too.
         let count = self.eyes.len();
-        let beside = |left: bool| match (left, first.wrapping_add(1) < count) {
-            (true, true) => first.wrapping_add(1),
+        let beside = |index: usize, left: bool| match (left, index.wrapping_add(1) < count) {
+            (true, true) => index.wrapping_add(1),
             (true, false) => 0,
-            (false, _) => first.checked_sub(1).unwrap_or(count.wrapping_sub(1)),
+            (false, _) => index.checked_sub(1).unwrap_or(count.wrapping_sub(1)),
         };
-        for left in [left, !left] {
-            let index = beside(left);
-            if let Some(eye) = self.eyes.get(index)
-                && let (_, Some(seen)) = ask(index, eye, from_eye)
-                && (self.disjoint || !seen)
-            {
-                return seen;
-            }
-            if self.disjoint {
+        let mut index = usize::from(*hint);
+        let mut before = usize::MAX;
+        for _ in 0..ASKED {
+            let Some(eye) = self.eyes.get(index) else {
                 break;
+            };
+            let (left, seen) = ask(index, eye, from_eye);
+            if let Some(seen) = seen {
+                *hint = index as u8;
+                if self.disjoint || !seen {
+                    return seen;
+                }
+                return [true, false].into_iter().all(|left| {
+                    let index = beside(index, left);
+                    let seen = self
+                        .eyes
+                        .get(index)
+                        .and_then(|eye| ask(index, eye, from_eye).1);
+                    seen.unwrap_or(true)
+                });
             }
+            let next = beside(index, left);
+            if next == before {
+                // Between the two.
+                return true;
+            }
+            (before, index) = (index, next);
         }
+        *hint = index as u8;
         true
     }
 }
@@ -426,9 +440,9 @@ mod tests {
         set
     }
 
-    /// Whoever is asked of all sensors says the same as who is asked by direction.
+    /// Whoever is asked of all sensors says the same as who goes from neighbour to neighbour.
     #[test]
-    fn the_sensors_that_see_a_place_are_found_by_its_direction() {
+    fn the_sensors_that_see_a_place_are_found_by_their_neighbours() {
         let mut apart = set("-90", None);
         if let Some(mount) = apart.mounts.first_mut() {
             mount.pose = Pose::new(Point::default(), mount.pose.heading);
@@ -456,10 +470,15 @@ mod tests {
                     });
                     let seen: heapless::Vec<usize, 12> = views.collect();
                     let mut asked = heapless::Vec::<usize, 12>::new();
-                    eyes.seeing(place, |index, _, _, _| {
-                        asked.push(index).unwrap();
-                        true
-                    });
+                    let mut hint = 0;
+                    // From the first one it takes a few ticks to come to the last.
+                    for _ in 0..12 / 3 {
+                        asked.clear();
+                        eyes.seeing(place, &mut hint, |index, _, _, _| {
+                            asked.push(index).unwrap();
+                            true
+                        });
+                    }
                     asked.sort_unstable();
                     if *disjoint {
                         // At an edge two may see it: one is asked.

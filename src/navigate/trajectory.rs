@@ -1,13 +1,11 @@
 //! Motions of the body in small steps, and how far they stay clear of the points near it.
 //!
 //! Only points in the box that the body passes through are looked at. Their clearance changes by no more in a step than the
-//! body's farthest point moves: where there is room, steps are skipped, and where a bound of the clearance shows
-//! the room, no root is taken.
+//! body's farthest point moves: where there is room, steps are skipped.
 
 use super::footprint::Outline;
 use super::near::Near;
 use super::steps::{Bearing, Steps, Vector};
-use crate::geometry::Point;
 use crate::integer::{quotient, ratio, saturate};
 use crate::signals::Twist;
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond, Seconds};
@@ -33,15 +31,56 @@ struct Placed {
 pub struct Trajectory {
     poses: Vec<Placed, MAX_STEPS>,
     // Finer than the poses: what many steps lose by rounding is more than a margin has to spare.
-    at: Point,
-    heading: Angle,
-    forward: Bearing,
+    x: i32,
+    y: i32,
+    forward: Turn,
     /// The longest step, and the largest turn in one.
     advance: Steps,
     turn: Angle,
     /// The box of all its places, the first one's among them.
     least: Vector,
     most: Vector,
+}
+
+/// Fractional bits of [`Turn`].
+const TURN_BITS: u32 = 15;
+
+/// A turn as cosine and sine. Steps are turned by one after the other: each loses 2⁻¹⁶ of its length at most.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    cos: i32,
+    sin: i32,
+}
+
+impl Turn {
+    const NONE: Self = Self {
+        cos: 1 << TURN_BITS,
+        sin: 0,
+    };
+
+    fn of(angle: Angle) -> Self {
+        if angle == Angle::ZERO {
+            return Self::NONE;
+        }
+        let (cos, sin) = angle.cos_sin();
+        let [cos, sin] = [cos, sin].map(|c| c.to_bits().wrapping_add(1 << 14) >> 15);
+        Self { cos, sin }
+    }
+
+    fn turned(self, by: Self) -> Self {
+        const HALF: i32 = 1 << (TURN_BITS - 1);
+        let cos = (self.cos.wrapping_mul(by.cos)).wrapping_sub(self.sin.wrapping_mul(by.sin));
+        let sin = (self.sin.wrapping_mul(by.cos)).wrapping_add(self.cos.wrapping_mul(by.sin));
+        Self {
+            cos: cos.wrapping_add(HALF) >> TURN_BITS,
+            sin: sin.wrapping_add(HALF) >> TURN_BITS,
+        }
+    }
+
+    /// With 14 fractional bits.
+    fn bearing(self) -> Bearing {
+        Bearing::from_bits((self.cos >> 1) as i16, (self.sin >> 1) as i16)
+    }
 }
 
 /// Where a trajectory meets a point.
@@ -58,9 +97,9 @@ impl Trajectory {
     pub const fn new() -> Self {
         Self {
             poses: Vec::new(),
-            at: Point::new(Metres::ZERO, Metres::ZERO),
-            heading: Angle::ZERO,
-            forward: Bearing::AHEAD,
+            x: 0,
+            y: 0,
+            forward: Turn::NONE,
             advance: Steps::ZERO,
             turn: Angle::ZERO,
             least: Vector::ZERO,
@@ -68,34 +107,49 @@ impl Trajectory {
         }
     }
 
-    /// Length of a step of [`Trajectory::arc`]: 5/128 m.
-    pub const STEP: Steps = Steps::from_bits(160);
+    /// Length of a step along an [arc](Trajectory::arc), 10/128 m, or half of that where it bends by [`Trajectory::BENT`] or
+    /// more.
+    pub const STEP: Steps = Steps::from_bits(320);
 
-    /// `length` metres along an arc, forward or backward, in steps of [`Trajectory::STEP`].
+    /// In longer steps a corner would cut too much of the way between them.
+    pub const BENT: PerMetre = PerMetre::lit("1.5");
+
+    /// `length` metres along an arc, forward or backward.
     pub fn arc(curvature: PerMetre, backward: bool, length: Steps) -> Self {
         let mut trajectory = Self::new();
         trajectory.bend(curvature, backward, length);
         trajectory
     }
 
-    /// Becomes an [arc](Self::arc). In place: a copy of all poses costs as much as ten of them.
-    pub(super) fn bend(&mut self, curvature: PerMetre, backward: bool, length: Steps) {
+    /// Becomes an [arc](Self::arc), in place: a copy of all poses costs as much as ten of them. Returns the length of its
+    /// steps.
+    pub(super) fn bend(&mut self, curvature: PerMetre, backward: bool, length: Steps) -> Steps {
         self.clear();
-        let step = if backward { -Self::STEP } else { Self::STEP };
-        let turn = Angle::from_radians(curvature.get().saturating_mul(
-            fixed::types::I16F16::from_bits(step.bits().wrapping_mul(16)),
-        ));
+        let step = if curvature.abs() < Self::BENT {
+            Self::STEP
+        } else {
+            Self::STEP.half()
+        };
+        let forth = if backward { -step } else { step }.metres();
+        let turn = Angle::from_radians(
+            curvature
+                .get()
+                .saturating_mul(fixed::types::I16F16::from_bits(forth.bits())),
+        );
+        self.steps_are(forth, turn);
+        let turn = Turn::of(turn);
         for _ in 0..ARC_STEPS {
-            if Self::STEP.bits().wrapping_mul(self.poses.len() as i32) >= length.bits() {
+            if step.bits().wrapping_mul(self.poses.len() as i32) >= length.bits() {
                 break;
             }
-            self.go(step.metres(), turn);
+            self.go(forth, turn);
         }
+        step
     }
 
-    /// A period in which the twist goes from `driven` to `twist`, then both parts braked to rest, two steps a period: in a
-    /// whole one a corner that turns at 3 rad/s goes 5 cm and may pass a point that neither end shows. What has not
-    /// come to rest after [`MAX_STEPS`] ends there.
+    /// A period in which the twist goes from `driven` to `twist`, then both parts braked to rest. In a period that turns by
+    /// more than 3° two steps: in a whole one a corner that turns at 3 rad/s goes 5 cm and may pass a point that neither
+    /// end shows. What has not come to rest after half of [`MAX_STEPS`] periods ends there.
     pub fn braked(driven: Twist, twist: Twist, brakes: Brakes) -> Self {
         let mut trajectory = Self::new();
         trajectory.brake(driven, twist, brakes);
@@ -104,9 +158,8 @@ impl Trajectory {
 
     fn clear(&mut self) {
         self.poses.clear();
-        self.at = Point::new(Metres::ZERO, Metres::ZERO);
-        self.heading = Angle::ZERO;
-        self.forward = Bearing::AHEAD;
+        (self.x, self.y) = (0, 0);
+        self.forward = Turn::NONE;
         self.advance = Steps::ZERO;
         self.turn = Angle::ZERO;
         self.least = Vector::ZERO;
@@ -115,6 +168,7 @@ impl Trajectory {
 
     /// Becomes the way of a [braked](Self::braked) twist, in place.
     pub(super) fn brake(&mut self, driven: Twist, twist: Twist, brakes: Brakes) {
+        const MUCH: Angle = Angle::deg("3");
         self.clear();
         let (mut before, mut now) = (driven, twist);
         for _ in 0..MAX_STEPS / 2 {
@@ -122,47 +176,62 @@ impl Trajectory {
             if mean == Twist::REST && now == Twist::REST {
                 break;
             }
-            let half = Seconds::from_bits(brakes.period.bits() >> 1);
-            let (way, turn) = (mean.linear.over(half), mean.angular.over(half));
+            let (mut way, mut turn) = (
+                mean.linear.over(brakes.period),
+                mean.angular.over(brakes.period),
+            );
+            let twice = turn.abs().bits() > MUCH.bits();
+            if twice {
+                way = Metres::from_bits(way.bits() >> 1);
+                turn = Angle::from_bits(turn.bits() >> 1);
+            }
+            self.steps_are(way, turn);
+            let turn = Turn::of(turn);
             self.go(way, turn);
-            self.go(way, turn);
+            if twice {
+                self.go(way, turn);
+            }
             (before, now) = (now, brakes.applied(now));
         }
     }
 
-    fn go(&mut self, way: Metres, turn: Angle) {
-        let before = self.forward;
-        if turn != Angle::ZERO {
-            self.heading = self.heading + turn;
-            self.forward = Bearing::of(self.heading);
-        }
-        // Along the mean of both bearings, which is shorter than one by an eighth of the turn's square: less than a
-        // thousandth at 3 rad/s.
-        let along = |before: i16, after: i16| {
-            let sum = i32::from(before).wrapping_add(after.into());
-            Metres::from_bits(way.bits().wrapping_mul(sum) >> 15)
-        };
-        let [c, s] = before.bits();
-        let [cos, sin] = self.forward.bits();
-        self.at = self.at + Point::new(along(c, cos), along(s, sin));
+    /// Notes how long the next steps are.
+    fn steps_are(&mut self, way: Metres, turn: Angle) {
         self.advance = self.advance.max(Steps::of(way.abs()) + Steps::from_bits(1));
         if turn.abs().bits() > self.turn.bits() {
             self.turn = turn.abs();
         }
-        // The callers' loops end before it is full.
-        let at = Vector::of(self.at);
+    }
+
+    #[inline(always)]
+    fn go(&mut self, way: Metres, turn: Turn) {
+        let before = self.forward;
+        let after = before.turned(turn);
+        self.forward = after;
+        // Along the mean of both bearings, which is shorter than one by an eighth of the turn's square: less than a
+        // thousandth at 3 rad/s. A step is less than half a metre: the product fits.
+        let along = |before: i32, after: i32| {
+            way.bits().wrapping_mul(before.wrapping_add(after) >> 1) >> TURN_BITS
+        };
+        self.x = self.x.wrapping_add(along(before.cos, after.cos));
+        self.y = self.y.wrapping_add(along(before.sin, after.sin));
+        let steps = |bits: i32| (bits >> 4).clamp(i16::MIN.into(), i16::MAX.into());
+        let (x, y) = (steps(self.x), steps(self.y));
+        let at = Vector::new(Steps::from_bits(x), Steps::from_bits(y));
         self.least = Vector::new(self.least.x.min(at.x), self.least.y.min(at.y));
         self.most = Vector::new(self.most.x.max(at.x), self.most.y.max(at.y));
+        // The callers' loops end before it is full.
         let _ = self.poses.push(Placed {
-            x: at.x.bits() as i16,
-            y: at.y.bits() as i16,
-            turn: self.forward,
+            x: x as i16,
+            y: y as i16,
+            turn: after.bearing(),
         });
     }
 
     /// Where it ends.
     pub fn end(&self) -> Vector {
-        Vector::of(self.at)
+        let [x, y] = [self.x, self.y].map(|bits| Steps::of(Metres::from_bits(bits)));
+        Vector::new(x, y)
     }
 
     /// Steps.
@@ -178,6 +247,21 @@ impl Trajectory {
     /// The first place where a point comes closer to the outline than `margin` while it comes closer still. A point that
     /// is too close already and recedes does not count: else the robot could never leave it.
     pub(super) fn contact(&self, near: &Near, outline: &Outline, margin: Steps) -> Option<Contact> {
+        self.search::<false>(near, outline, margin)
+    }
+
+    /// Whether there is such a place: the first point found is enough.
+    pub(super) fn touches(&self, near: &Near, outline: &Outline, margin: Steps) -> bool {
+        self.search::<true>(near, outline, margin).is_some()
+    }
+
+    /// The first place of all, or of the first point that has one.
+    fn search<const ANY: bool>(
+        &self,
+        near: &Near,
+        outline: &Outline,
+        margin: Steps,
+    ) -> Option<Contact> {
         // What the farthest point of the body moves in a step, rounded up.
         let turn = self.turn.radians().to_bits() >> 2;
         let swept = outline.reach.bits().wrapping_mul(turn.min(1 << 15)) >> 14;
@@ -212,13 +296,7 @@ impl Trajectory {
                 };
                 let [x, y] = [pose.x, pose.y].map(|steps| Steps::from_bits(steps.into()));
                 let place = (at - Vector::new(x, y)).in_frame(pose.turn);
-                let room = skipped(outline.clearance_at_least(place) - margin);
-                if room > 0 {
-                    adjacent = false;
-                    step = step.saturating_add(1).saturating_add(room);
-                    continue;
-                }
-                let here = outline.clearance(place);
+                let here = outline.clearance_at_least(place);
                 // Where steps were skipped there was room a step ago.
                 if here < margin && (!adjacent || here < before) {
                     let part = if adjacent {
@@ -229,6 +307,9 @@ impl Trajectory {
                         0
                     };
                     first = Some(Contact { step, part });
+                    if ANY {
+                        return first;
+                    }
                     end = step;
                     break;
                 }
@@ -241,16 +322,16 @@ impl Trajectory {
         first
     }
 
-    /// How far along an [arc](Self::arc) the robot stays clear: all of it at most.
-    pub(super) fn free(&self, near: &Near, outline: &Outline, margin: Steps) -> Steps {
+    /// How far along an [arc](Self::arc) in such steps the robot stays clear: all of it at most.
+    pub(super) fn free(&self, near: &Near, outline: &Outline, margin: Steps, step: Steps) -> Steps {
         let (steps, part) = match self.contact(near, outline, margin) {
             Some(contact) => (contact.step as i32, contact.part),
             None => (self.poses.len() as i32, 0),
         };
-        let step = Self::STEP.bits();
         Steps::from_bits(
-            step.wrapping_mul(steps)
-                .wrapping_add(step.wrapping_mul(part) >> 8),
+            step.bits()
+                .wrapping_mul(steps)
+                .wrapping_add(step.bits().wrapping_mul(part) >> 8),
         )
     }
 }

@@ -42,6 +42,12 @@ struct Band {
     explained: u32,
 }
 
+/// Points farther away than this, and those that no sensor saw, are looked at in a quarter of the ticks.
+const FAR: Steps = Steps::lit("1.3");
+
+/// Bit of a record's sensor: it was not seen when it was last looked at.
+pub(super) const UNSEEN: u8 = 1 << 7;
+
 impl<'a, const N: usize> Judge<'a, N> {
     pub fn new(
         params: &MemoryParams,
@@ -88,9 +94,12 @@ impl<'a, const N: usize> Judge<'a, N> {
 
     /// Supports or doubts a point; whether it is kept. Sets the bits of sensors whose echo it explains.
     #[inline(always)]
-    pub fn keeps(&self, record: &mut Record, explained: &mut u32) -> bool {
+    pub fn keeps(&self, record: &mut Record, explained: &mut u32, rests: bool) -> bool {
         let seen = record.at() - self.body;
         let away = seen.norm_squared();
+        if rests && (away > const { FAR.squared() } || record.eye & UNSEEN != 0) {
+            return true;
+        }
         if away > self.keep || self.now.wrapping_sub(record.seen) > self.lifetime {
             return false;
         }
@@ -98,31 +107,39 @@ impl<'a, const N: usize> Judge<'a, N> {
         if away < self.reach && self.outline.covers(place, DEEP) {
             return false;
         }
-        self.eyes.seeing(place, |index, eye, from_eye, view| {
-            let Some(band) = self.bands.get(index) else {
-                return true;
-            };
-            let distance = from_eye.norm_squared();
-            if view == View::Sure && distance < band.disproved {
-                record.confidence = record.confidence.saturating_sub(1);
-                return record.confidence > 0;
-            }
-            if distance < band.far && distance >= band.near {
-                record.confidence = SURE;
-                record.seen = self.now;
-                if distance < band.explained {
-                    *explained |= 1u32.wrapping_shl(index as u32);
+        let mut hint = record.eye & !UNSEEN;
+        let mut unseen = UNSEEN;
+        let kept = self
+            .eyes
+            .seeing(place, &mut hint, |index, eye, from_eye, view| {
+                unseen = 0;
+                let Some(band) = self.bands.get(index) else {
+                    return true;
+                };
+                let distance = from_eye.norm_squared();
+                if view == View::Sure && distance < band.disproved {
+                    record.confidence = record.confidence.saturating_sub(1);
+                    return record.confidence > 0;
                 }
-                if self.snap
-                    && let Some(range) = self.echoes.as_slice().get(index).and_then(|e| e.range())
-                    && distance >= (range + NOISE).squared()
-                {
-                    let place = eye.at + drawn(from_eye, range);
-                    record.move_to(self.body + place.turned(self.forward));
+                if distance < band.far && distance >= band.near {
+                    record.confidence = SURE;
+                    record.seen = self.now;
+                    if distance < band.explained {
+                        *explained |= 1u32.wrapping_shl(index as u32);
+                    }
+                    if self.snap
+                        && let Some(range) =
+                            self.echoes.as_slice().get(index).and_then(|e| e.range())
+                        && distance >= (range + NOISE).squared()
+                    {
+                        let place = eye.at + drawn(from_eye, range);
+                        record.move_to(self.body + place.turned(self.forward));
+                    }
                 }
-            }
-            true
-        })
+                true
+            });
+        record.eye = hint | unseen;
+        kept
     }
 }
 
