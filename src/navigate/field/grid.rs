@@ -7,7 +7,7 @@ use crate::units::Metres;
 
 /// Cells in a row: the bits of a word.
 pub(super) const COLUMNS: usize = 32;
-/// Rows. With 24 of them, enough for what lies ahead, half as many traps are left.
+/// Rows. 24 are enough for what lies ahead, but with them the robot gets out of half as many traps.
 pub(super) const ROWS: usize = 32;
 /// Column and row of the robot's cell.
 pub(super) const MIDDLE: (usize, usize) = (COLUMNS / 2, ROWS / 2);
