@@ -8,7 +8,7 @@ use crate::signals::Twist;
 use crate::units::{Angle, Seconds};
 use heapless::Vec;
 
-/// The most points: as many as are remembered. If there are more, nearer ones win.
+/// The most points: as many as are remembered, so that none that is near is ever left out.
 pub const MAX_NEAR: usize = super::memory::CAPACITY;
 
 /// Points closer to the outline than this come first: they decide most questions.
@@ -44,8 +44,6 @@ pub struct Near {
     least: Steps,
     /// Points closer than [`CLOSE`].
     close: usize,
-    /// The point that was last looked at for its place.
-    looked: usize,
 }
 
 impl Near {
@@ -55,11 +53,10 @@ impl Near {
             spots: Vec::new(),
             least: Steps::MAX,
             close: 0,
-            looked: 0,
         }
     }
 
-    /// Of `places`, in the frame of the body and within ±8 m.
+    /// Of `places`, in the frame of the body and within ±8 m: the first [`MAX_NEAR`] of them.
     pub fn collect(&mut self, places: impl Iterator<Item = Vector>, outline: &Outline) {
         self.spots.clear();
         for place in places {
@@ -68,11 +65,9 @@ impl Near {
                 y: place.y.bits() as i16,
                 clearance: 0,
             };
-            if self.spots.is_full() {
-                self.replace(spot);
-            } else {
-                // There is room.
-                let _ = self.spots.push(spot);
+            // There is room for all that a memory holds.
+            if self.spots.push(spot).is_err() {
+                break;
             }
         }
         // Twice the same: the first one need not tell shapes apart for every point.
@@ -80,24 +75,6 @@ impl Near {
             Some(rectangle) => measure(&mut self.spots, |at| rectangle.clearance_at_least(at)),
             None => measure(&mut self.spots, |at| outline.clearance_at_least(at)),
         };
-    }
-
-    /// Puts a point in the place of one that is farther away: the farthest of a few, which are others the next time.
-    #[cold]
-    fn replace(&mut self, spot: Spot) {
-        const LOOKED: usize = 4;
-        let away = |spot: &Spot| spot.at().norm_squared();
-        let mut farthest = (away(&spot), None);
-        for _ in 0..LOOKED {
-            self.looked = self.looked.wrapping_add(1) % MAX_NEAR;
-            let known = self.spots.get(self.looked).map_or(0, away);
-            if known > farthest.0 {
-                farthest = (known, Some(self.looked));
-            }
-        }
-        if let Some(place) = farthest.1.and_then(|index| self.spots.get_mut(index)) {
-            *place = spot;
-        }
     }
 
     pub(super) fn digest(&self, digest: &mut Digest) {
