@@ -8,6 +8,8 @@
 //!                                                         escape: short arcs
 //! ```
 //!
+//! With what is left of a tick then the [guide field](Field) for the next one is worked out.
+//!
 //! The geometry decides where the robot can go, the rule tables how it turns and how fast it drives there, and the barrier
 //! has the last word. Everything is integers; nothing allocates; every loop is bounded.
 //!
@@ -116,18 +118,6 @@ pub struct Navigator<const N: usize> {
     chosen: Angle,
     /// Ticks since the path was last contradicted; saturates.
     quiet: u16,
-    busy: Busy,
-}
-
-/// What a tick was busy with: the next one is much the same.
-#[derive(Clone, Copy, Debug, Default)]
-struct Busy {
-    /// Sectors of the polar map worked out.
-    sectors: u8,
-    /// The gate tried more than the wanted twist.
-    gated: bool,
-    /// Arcs were looked along.
-    escapes: bool,
 }
 
 impl<const N: usize> Default for Navigator<N> {
@@ -140,8 +130,11 @@ impl<const N: usize> Default for Navigator<N> {
 const LOOK: Steps = Steps::lit("2");
 const BEYOND: Steps = Steps::lit("0.45");
 
-/// What a tick may cost before the guide field has to wait, in its [units](FieldParams::budget), and what it gets anyway.
-const WHOLE: i32 = 340;
+/// With more points near than that they are looked at less far away: in a crowd what is nearest decides.
+const CROWD: usize = 50;
+const LESS: Steps = Steps::lit("0.4");
+
+/// Units of work that the guide field gets in every tick, whatever the tick has cost.
 const LEAST: i32 = 12;
 
 impl<const N: usize> Navigator<N> {
@@ -163,11 +156,6 @@ impl<const N: usize> Navigator<N> {
             before: Twist::REST,
             chosen: Angle::ZERO,
             quiet: u16::MAX,
-            busy: Busy {
-                sectors: 0,
-                gated: false,
-                escapes: false,
-            },
         }
     }
 
@@ -265,6 +253,7 @@ impl<const N: usize> Navigator<N> {
                     last: self.chosen - ahead.heading,
                     distance: course.distance,
                     look: Steps::of(p.map.look),
+                    briefly: self.supervisor.escapes(),
                 },
             )
         };
@@ -298,11 +287,10 @@ impl<const N: usize> Navigator<N> {
         probe.mark(Stage::Behave);
         let guarded = self.guard(setup, wanted);
         probe.mark(Stage::Guard);
-        self.busy = Busy {
-            sectors: self.map.looked() as u8,
-            gated: guarded.gated,
-            escapes: self.escape.worked,
-        };
+        if course.guided {
+            self.look_for_way(setup, pose, &course, decided.forget, guarded.looked);
+        }
+        probe.mark(Stage::Field);
         self.before = core::mem::replace(&mut self.last, guarded.twist);
         NavigationRecord {
             manoeuvre,
@@ -317,29 +305,52 @@ impl<const N: usize> Navigator<N> {
         }
     }
 
-    /// What a tick costs without the guide field, about, in its units, from what was counted on a Cortex-M4: by the points of
-    /// this one and by what the last one was busy with.
-    fn spent(&self) -> i32 {
-        let [points, near, close] = [
-            self.memory.len(),
-            self.near.spots().len(),
-            self.near.close(),
-        ]
-        .map(|count| count as u32);
-        let sectors = u32::from(self.busy.sectors).wrapping_mul(near.wrapping_add(10));
-        let gates = if self.busy.gated { 2 } else { 1 };
-        let gate = (close.wrapping_mul(22) >> 3).wrapping_add(20);
-        65u32
-            .wrapping_add(points.wrapping_mul(7) >> 3)
-            .wrapping_add(near.wrapping_mul(5) >> 3)
-            .wrapping_add(sectors >> 3)
-            .wrapping_add(gate.wrapping_mul(gates))
-            .wrapping_add(if self.busy.escapes { 50 } else { 0 }) as i32
+    /// A slice of the guide field, with what the tick has left: the last part of a tick, so that its cost is known. The way
+    /// that it finds is the next tick's.
+    fn look_for_way(
+        &mut self,
+        setup: &Setup<N>,
+        pose: Pose,
+        course: &Course,
+        forgot: bool,
+        looked: u32,
+    ) {
+        /// What forgetting costs.
+        const FORGETTING: i32 = 70;
+        let p = &setup.params.field;
+        let spent = self.spent(course.guidance.is_some(), looked);
+        let spent = spent.wrapping_add(if forgot { FORGETTING } else { 0 });
+        let left = i32::from(p.tick).wrapping_sub(spent).max(LEAST);
+        self.field
+            .work(p, left, &setup.costs, &self.memory, pose.at, course.carrot);
+    }
+
+    /// What this tick has cost, about, in the field's [units](FieldParams::budget): fitted to what `cargo navigation` counts
+    /// on a Cortex-M4F. Of a thousand ticks one costs 80 more. `looked` is what the guard [looked at](Guarded::looked).
+    fn spent(&self, planned: bool, looked: u32) -> i32 {
+        let [near, sectors, judged] = [
+            self.near.spots().len() as u32,
+            self.map.looked(),
+            self.memory.judged(),
+        ];
+        let quarters = near
+            .wrapping_mul(9)
+            .wrapping_add(sectors.wrapping_mul(26))
+            .wrapping_add(judged.wrapping_mul(10))
+            .wrapping_add(looked.wrapping_add(self.escape.looked_at).wrapping_mul(6));
+        (quarters >> 2)
+            .wrapping_add(67)
+            .wrapping_add(if planned { 43 } else { 0 }) as i32
     }
 
     /// How far from the middle of the body points matter.
     fn look(&self, setup: &Setup<N>) -> Steps {
-        (insertion_range(&setup.params.memory, self.last.linear) + BEYOND).min(LOOK)
+        let look = (insertion_range(&setup.params.memory, self.last.linear) + BEYOND).min(LOOK);
+        if self.near.spots().len() > CROWD {
+            look - LESS
+        } else {
+            look
+        }
     }
 
     /// Where to head: along the path while it is free, else by the guide field.
@@ -351,10 +362,6 @@ impl<const N: usize> Navigator<N> {
         };
         let mut head_for = course.carrot;
         if course.guided {
-            let left = WHOLE.wrapping_sub(self.spent()).max(LEAST);
-            let costs = &setup.costs;
-            self.field
-                .work(&p.field, left, costs, &self.memory, pose.at, course.carrot);
             head_for = self.field.guide(&p.field, pose.at).unwrap_or(course.carrot);
         } else {
             self.field.reset();
@@ -463,7 +470,7 @@ impl<const N: usize> Navigator<N> {
                 .angular
                 .limit(RadiansPerSecond::new(p.limits.yaw_rate)),
         };
-        let slowed = slow(
+        let (slowed, looked) = slow(
             &p.barrier,
             &self.near,
             &setup.outline,
@@ -488,6 +495,7 @@ impl<const N: usize> Navigator<N> {
         );
         Guarded {
             slowed: slowed != wanted,
+            looked: guarded.looked.wrapping_add(looked),
             ..guarded
         }
     }

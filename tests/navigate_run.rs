@@ -371,6 +371,25 @@ fn hearing_with(
 }
 
 #[test]
+fn an_obstacle_that_is_neared_does_not_fill_the_memory() {
+    let setup = presets::jackal::<16>().setup().unwrap();
+    let mut navigator = Navigator::<16>::new();
+    let mut most = 0;
+    for tick in 0..28 {
+        // A cone ahead hears something that the robot nears by 2 cm a tick and whose nearest place is each time 2 cm nearer than
+        // the last; the others hear nothing.
+        let gone = 0.02 * f64::from(tick);
+        let mut readings = [RangeReading::fresh(Range::Clear); 16];
+        readings[8] = RangeReading::fresh(Range::Echo(metres(1.6 - 2.0 * gone)));
+        navigator.see(&setup, &readings);
+        let pose = Pose::new(point([gone, 0.0]), Angle::ZERO);
+        navigator.step(&setup, pose, Task::Goal(point([9.0, 0.0])));
+        most = most.max(navigator.memory().len());
+    }
+    assert!((1..=4).contains(&most), "{most}");
+}
+
+#[test]
 fn a_dead_cone_ahead_is_found_out_and_caps_the_speed() {
     let mut ranges = [2.0; 16];
     assert_eq!(hearing(ranges, 60).1.dead, 0);

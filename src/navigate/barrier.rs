@@ -56,13 +56,15 @@ pub struct Guarded {
     pub gated: bool,
     /// Not even braking in full stays clear: a point was seen too late.
     pub trapped: bool,
+    /// How often a point was looked at from a place on the way.
+    pub looked: u32,
 }
 
 /// No arc is followed that is tighter than this.
 const TIGHTEST: PerMetre = PerMetre::lit("6");
 
-/// Speed of the wanted twist limited by the free length of the arcs ahead. `room` are the angles that the robot can turn in
-/// place to the left and right.
+/// Speed of the wanted twist limited by the free length of the arcs ahead, and how often a point was looked at for that.
+/// `room` are the angles that the robot can turn in place to the left and right.
 pub fn slow(
     params: &BarrierParams,
     near: &Near,
@@ -70,7 +72,7 @@ pub fn slow(
     room: (Angle, Angle),
     driven: Twist,
     wanted: Twist,
-) -> Twist {
+) -> (Twist, u32) {
     let mut twist = wanted;
     let arcs = [curvature(wanted, TIGHTEST), curvature(driven, TIGHTEST)];
     let backward = wanted.linear < MetresPerSecond::ZERO;
@@ -94,7 +96,7 @@ pub fn slow(
         let allowed = allowed(params, free, speed);
         twist.linear = twist.linear.limit(allowed);
     }
-    limit_turning(twist, room)
+    (limit_turning(twist, room), way.looked)
 }
 
 /// Distance at which a speed begins to be limited: 0.1 m + v²/2a + v/10.
@@ -167,23 +169,27 @@ pub fn gate(
         _ => (MetresPerSecond::ZERO, RadiansPerSecond::ZERO),
     };
     let mut way = Trajectory::new();
-    let mut passes = |twist: Twist| {
+    let mut met = None;
+    let mut passes = |way: &mut Trajectory, twist: Twist| {
         way.brake(driven, twist, brakes);
-        !way.touches(near, outline, margin)
+        met = way.touches(near, outline, margin, met);
+        met.is_none()
     };
-    if passes(wanted) {
+    if passes(&mut way, wanted) {
         return Guarded {
             twist: wanted,
+            looked: way.looked,
             ..Guarded::default()
         };
     }
     for index in 0..5 {
         let (linear, angular) = gentler(index);
         let twist = brakes.toward(driven, Twist { linear, angular });
-        if passes(twist) {
+        if passes(&mut way, twist) {
             return Guarded {
                 twist,
                 gated: twist != wanted,
+                looked: way.looked,
                 ..Guarded::default()
             };
         }
@@ -193,6 +199,7 @@ pub fn gate(
         twist: brakes.toward(driven, rest),
         gated: true,
         trapped: true,
+        looked: way.looked,
         ..Guarded::default()
     }
 }

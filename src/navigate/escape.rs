@@ -12,10 +12,8 @@ use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
 const SPEED: MetresPerSecond = MetresPerSecond::lit("0.28");
 /// Yaw rate in place.
 const TURN: RadiansPerSecond = RadiansPerSecond::lit("1");
-/// Ticks for which a choice is kept before the next one is thought about; that takes three more.
+/// Ticks for which a choice is kept before the next one is thought about; that takes one more an arc.
 const KEPT: u8 = 5;
-/// Arcs that are looked along in a tick: each costs as much as half a guard.
-const AT_ONCE: u8 = 2;
 /// How far an arc is looked along.
 const LOOK: Steps = Steps::lit("0.35");
 /// An arc that is free for less is none.
@@ -48,8 +46,8 @@ pub(super) struct Escape {
     /// The best of them, and of those that go on the way of the last choice.
     best: Choice,
     on: Choice,
-    /// Arcs were looked along in this tick.
-    pub worked: bool,
+    /// How often a point was looked at in this tick, and some more for an arc.
+    pub looked_at: u32,
 }
 
 impl Escape {
@@ -61,7 +59,7 @@ impl Escape {
             looked: 0,
             best: None,
             on: None,
-            worked: false,
+            looked_at: 0,
         }
     }
 
@@ -75,24 +73,16 @@ impl Escape {
         margin: Metres,
         direction: Angle,
     ) -> Twist {
-        self.worked = false;
+        self.looked_at = 0;
         if let Some(left) = self.left.checked_sub(1) {
             self.left = left;
             return self.twist;
         }
-        self.worked = true;
-        for _ in 0..AT_ONCE {
-            let Some((backward, curvature)) = ARCS.get(usize::from(self.looked)) else {
-                break;
-            };
+        // One a tick: it costs as much as half a guard.
+        if let Some(bent) = ARCS.get(usize::from(self.looked)) {
             self.looked = self.looked.wrapping_add(1);
-            let choice = arc(
-                near,
-                outline,
-                Steps::of(margin),
-                direction,
-                (*backward, *curvature),
-            );
+            let (choice, looked_at) = arc(near, outline, Steps::of(margin), direction, *bent);
+            self.looked_at = looked_at.wrapping_add(15);
             let better = |known: Choice| match (known, choice) {
                 (Some((known, _)), Some((worth, _))) => worth > known,
                 (None, Some(_)) => true,
@@ -102,9 +92,10 @@ impl Escape {
                 self.best = choice;
             }
             // On the way of the last choice as long as it goes on: a robot that goes to and fro leaves nothing.
+            let backward = bent.0;
             let goes_on = match self.twist.linear {
-                speed if speed < MetresPerSecond::ZERO => *backward,
-                speed => speed > MetresPerSecond::ZERO && !*backward,
+                speed if speed < MetresPerSecond::ZERO => backward,
+                speed => speed > MetresPerSecond::ZERO && !backward,
             };
             if goes_on && better(self.on) {
                 self.on = choice;
@@ -117,7 +108,7 @@ impl Escape {
         *self = Self {
             twist: choice.map_or_else(|| turn(map), |(_, twist)| twist),
             left: KEPT,
-            worked: true,
+            looked_at: self.looked_at,
             ..Self::new()
         };
         self.twist
@@ -130,19 +121,20 @@ impl Escape {
 }
 
 /// An arc: worth the length that is free of it, up to three times if it leads towards the direction; none if it is blocked
-/// at once.
+/// at once. And how often a point was looked at.
 fn arc(
     near: &Near,
     outline: &Outline,
     margin: Steps,
     direction: Angle,
     (backward, curvature): (bool, PerMetre),
-) -> Choice {
+) -> (Choice, u32) {
     let mut way = Trajectory::new();
     let step = way.bend(curvature, backward, LOOK);
     let free = way.free(near, outline, margin, step);
+    let looked_at = way.looked;
     if free < LEAST {
-        return None;
+        return (None, looked_at);
     }
     way.bend(curvature, backward, free);
     let (cos, _) = (way.end().direction() - direction).cos_sin();
@@ -153,7 +145,7 @@ fn arc(
         linear,
         angular: linear.on_arc(curvature),
     };
-    Some((free.bits().wrapping_mul(toward), twist))
+    (Some((free.bits().wrapping_mul(toward), twist)), looked_at)
 }
 
 /// In place, to the side with more room.

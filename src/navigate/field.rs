@@ -6,8 +6,8 @@
 //! [wave] spreads from the carrot to the robot; where the way that it came passes a little ahead of the robot lies the
 //! guide point.
 //!
-//! The work is cut into slices: a tick does no more than its budget and what the tick's other parts leave, and a new field is
-//! ready after two or three ticks. A way is kept until it is old, its end has moved, or a point appears near it;
+//! The work is cut into slices: it is the last part of a tick, of up to its budget and what the other parts left, and a new
+//! field is ready for the next tick, or for one of the two after it. A way is kept until it is old, its end has moved, or a point appears near it;
 //! meanwhile the guide point runs along it ahead of the robot.
 
 mod costs;
@@ -37,18 +37,19 @@ pub struct FieldParams {
     pub wall_distance: Metres,
     /// Factor of a wall's cell, rounded; 1 to 120.
     pub wall: I16F16,
-    /// A halo this much farther out still costs more than a free cell; both together up to 0.45 m.
+    /// This much farther out, in the halo, a cell costs three free ones, and those beside it one and a half; both distances
+    /// together up to 0.29 m.
     pub halo_distance: Metres,
-    /// Factor above one at the halo's inner edge, falling to nothing at its outer one; then rounded to ½ or 2.
-    pub halo: I16F16,
     /// How far along the way the guide point lies; up to 1.2 m.
     pub ahead: Metres,
     /// Where the straight way to the carrot is free and within this of the field's direction, it is taken instead.
     pub straight: Angle,
     /// Cost added to the cells of a place where the robot got stuck, in quarters of a free cell's; twice that the next time.
     pub shun: u8,
-    /// Work in a tick, in units of about 150 instructions on a Cortex-M4; 8 or more.
+    /// Work in a tick, in units of about 100 instructions on a Cortex-M4; 8 or more. A whole field takes some 170.
     pub budget: u16,
+    /// What a tick may cost in all, in the same units, before the field has to wait for the next one; up to 30,000.
+    pub tick: u16,
     /// Ticks after which a way is looked for anew, whatever happens.
     pub refresh: u8,
 }
@@ -65,19 +66,14 @@ impl FieldParams {
             (
                 self.wall_distance > Metres::ZERO
                     && self.halo_distance > Metres::ZERO
-                    && far <= const { Metres::lit("0.45") },
+                    && far <= costs::MOST_REACH,
                 "field.wall_distance, field.halo_distance",
-                "above 0, together up to 0.45 m",
+                "above 0, together up to 0.29 m",
             ),
             (
                 (1 << 16..=120 << 16).contains(&self.wall.to_bits()),
                 "field.wall",
                 "1 to 120",
-            ),
-            (
-                (0..=31 << 16).contains(&self.halo.to_bits()),
-                "field.halo",
-                "0 to 31",
             ),
             (
                 (const { Metres::lit("0.15") }..=const { Metres::lit("1.2") })
@@ -86,6 +82,7 @@ impl FieldParams {
                 "0.15 to 1.2 m",
             ),
             (self.budget >= 8, "field.budget", "8 or more"),
+            (self.tick <= 30_000, "field.tick", "up to 30000"),
         ];
         match checks.into_iter().find(|(ok, ..)| !ok) {
             Some((_, field, allowed)) => Err(ParamError { field, allowed }),
@@ -269,7 +266,7 @@ impl Field {
                 self.shunned.stamp(&mut self.ground, self.frame);
                 nest(&mut self.ground);
                 let shunned = self.shunned.len() as i32;
-                *budget = budget.wrapping_sub(shunned.wrapping_mul(12).wrapping_add(4));
+                *budget = budget.wrapping_sub(shunned.wrapping_mul(8).wrapping_add(4));
                 self.phase = Phase::Spread;
                 return;
             };

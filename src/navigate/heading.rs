@@ -85,6 +85,8 @@ pub struct Wanted {
     pub distance: Steps,
     /// Look range of the map.
     pub look: Steps,
+    /// Whether there is one matters more than which.
+    pub briefly: bool,
 }
 
 /// The cheapest admissible heading; none if the robot can go nowhere.
@@ -121,7 +123,8 @@ pub fn choose(
     consider(&mut costs, sector_of(wanted.last));
     let mut most = consider(&mut costs, 0);
     let points = near.spots().len() as u32;
-    let enough = ENOUGH.min(ENOUGH_POINTS.checked_div(points).unwrap_or(ENOUGH));
+    let enough = if wanted.briefly { BRIEFLY } else { ENOUGH };
+    let enough = enough.min(ENOUGH_POINTS.checked_div(points).unwrap_or(ENOUGH));
     for step in 1..=SECTORS / 2 {
         let least_off = Angle::from_bits(((step as i32) << 26).wrapping_sub(1 << 25));
         if Weights::angle(weights.toward, least_off) >= most || costs.map.looked() >= enough {
@@ -139,9 +142,11 @@ pub fn choose(
     })
 }
 
-/// When so many sectors were looked along, the best one so far has to do: that bounds a tick. Fewer where many points are near.
+/// When so many sectors were looked along, the best one so far has to do: that bounds a tick. Fewer where many points are
+/// near, or where whether there is a heading matters more than which.
 const ENOUGH: u32 = 16;
-const ENOUGH_POINTS: u32 = 640;
+const ENOUGH_POINTS: u32 = 500;
+const BRIEFLY: u32 = 5;
 
 /// The sector that an angle lies in.
 fn sector_of(angle: Angle) -> usize {

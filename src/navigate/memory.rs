@@ -7,8 +7,9 @@
 //! lost.
 //!
 //! Cost: one pass over the points, each in the view of one to three sensors (of all, if they do not share a place), and at
-//! most five new points a sensor. What is far and what no sensor saw is looked at in every fourth tick only. When the memory is full a new point takes the place of one that is farther away, of
-//! eight that are looked at.
+//! most five new points a sensor. What is far is looked at in every fourth tick only, what no sensor saw in every eighth. A new
+//! point takes the place of one a little behind it, so that an obstacle which is neared does not fill the memory; when that
+//! is full, the place of one that is farther away, of eight that are looked at.
 
 mod judge;
 
@@ -21,7 +22,7 @@ use crate::geometry::{Point, Pose};
 use crate::units::{Metres, MetresPerSecond};
 use fixed::types::I16F16;
 use heapless::Vec;
-use judge::{Judge, UNSEEN};
+use judge::{FAR, Judge, SENSOR, UNSEEN};
 
 /// The most points.
 pub const CAPACITY: usize = 96;
@@ -56,7 +57,7 @@ struct Record {
     /// When it was last supported, in units of [`UNIT`] ticks; wraps.
     seen: u8,
     confidence: u8,
-    /// The sensor that it was last seen by, and whether it was not the last time.
+    /// The sensor that it was last seen by, and how it was when it was last looked at ([`UNSEEN`], [`FAR`]).
     eye: u8,
 }
 
@@ -65,6 +66,12 @@ const AHEAD: Steps = Steps::lit("0.35");
 
 /// Ticks in a unit of a record's time, as a power of two: 256 units are more than any lifetime.
 const UNIT: u32 = 4;
+
+/// The most points a little behind their echoes that are kept in mind.
+const BEHIND: usize = 16;
+
+/// A new point takes the place of one this near to it that is a little behind the echo: it is the same obstacle.
+const SAME: Steps = Steps::lit("0.07");
 
 /// Disproofs that a supported point survives, and one.
 const SURE: u8 = 2;
@@ -77,6 +84,10 @@ pub struct Memory {
     tick: u32,
     /// The point that was last looked at for its place.
     looked: usize,
+    /// Points that were a little behind their sensor's echo in the last update.
+    behind: Vec<u8, BEHIND>,
+    /// Points that were looked at in the last update.
+    judged: u8,
     /// Of the last update: the body in the frame of the points.
     body: Vector,
     forward: Bearing,
@@ -96,6 +107,8 @@ impl Memory {
             origin: Point::new(Metres::ZERO, Metres::ZERO),
             tick: 0,
             looked: 0,
+            behind: Vec::new(),
+            judged: 0,
             body: Vector::new(Steps::ZERO, Steps::ZERO),
             forward: Bearing::AHEAD,
         }
@@ -177,9 +190,12 @@ impl Memory {
         let judge = Judge::new(params, outline, eyes, echoes, self);
         let explained = self.judge(&judge);
         let farthest = insertion_range(params, speed);
-        for (index, (eye, echo)) in (0..32u32).zip(eyes.as_slice().iter().zip(echoes.as_slice())) {
-            let known = explained >> index & 1 == 1;
-            if !known
+        let mut heard = judge.heard & !explained;
+        while heard != 0 {
+            let index = heard.trailing_zeros() as usize;
+            heard &= heard.wrapping_sub(1);
+            if let Some(eye) = eyes.as_slice().get(index)
+                && let Some(echo) = echoes.as_slice().get(index)
                 && echo.range().is_some_and(|range| range <= farthest)
                 && let Some(at) = self.insert_arc(eye, index as u8, *echo)
             {
@@ -205,10 +221,15 @@ impl Memory {
     pub fn forget_doubtful<const N: usize>(&mut self, eyes: &Eyes<N>, outline: &Outline) {
         const NEAR: Steps = Steps::lit("1");
         let (body, forward) = (self.body, self.forward);
+        let near = (outline.reach + NEAR).squared();
         retain(&mut self.records, |record| {
-            let place = (record.at() - body).in_frame(forward);
-            outline.clearance_at_least(place) < NEAR
-                && eyes.seeing(place, &mut { record.eye & !UNSEEN }, |_, _, _, _| false)
+            let away = record.at() - body;
+            if away.norm_squared() > near {
+                return false;
+            }
+            let place = away.in_frame(forward);
+            eyes.seeing(place, &mut record.sensor(), |_, _, _, _| false)
+                && outline.clearance_at_least(place) < NEAR
         });
     }
 
@@ -233,14 +254,32 @@ impl Memory {
 
     /// Supports, disproves and drops points. Returns the sensors whose echo they explain, a bit each.
     fn judge<const N: usize>(&mut self, judge: &Judge<'_, N>) -> u32 {
+        /// What rests, by the tick and the number of a point: the far ones but in every fourth tick, those that no sensor
+        /// saw but in every eighth.
+        const RESTS: [u8; 8] = {
+            let mut rests = [FAR | UNSEEN; 8];
+            rests[0] = 0;
+            rests[4] = UNSEEN;
+            rests
+        };
         let mut explained = 0;
         let mut index = 0usize;
-        for turn in 0..CAPACITY as u32 {
-            let rests = turn.wrapping_add(self.tick) & 3 != 0;
-            let Some(record) = self.records.get_mut(index) else {
-                break;
-            };
-            if judge.keeps(record, &mut explained, rests) {
+        self.behind.clear();
+        let mut judged = 0u8;
+        let mut phase = self.tick as usize;
+        while let Some(record) = self.records.get_mut(index) {
+            phase = phase.wrapping_add(1);
+            if record.eye & RESTS[phase & 7] != 0 {
+                index = index.wrapping_add(1);
+                continue;
+            }
+            judged = judged.wrapping_add(1);
+            let mut behind = false;
+            if judge.keeps(record, &mut explained, &mut behind) {
+                if behind {
+                    // If there are more, two points may stand for one place.
+                    let _ = self.behind.push(index as u8);
+                }
                 index = index.wrapping_add(1);
                 continue;
             }
@@ -250,7 +289,13 @@ impl Memory {
                 *place = last;
             }
         }
+        self.judged = judged;
         explained
+    }
+
+    /// Points that were looked at in the last update.
+    pub(super) fn judged(&self) -> u32 {
+        self.judged.into()
     }
 
     /// Fills the arc that an echo may come from. Returns its middle, world.
@@ -287,6 +332,15 @@ impl Memory {
         let Some(record) = Record::new(place, seen, eye) else {
             return;
         };
+        let same = |known: &&mut Record| {
+            known.sensor() == eye && (known.at() - place).norm_squared() < const { SAME.squared() }
+        };
+        for index in &self.behind {
+            if let Some(known) = self.records.get_mut(usize::from(*index)).filter(same) {
+                *known = record;
+                return;
+            }
+        }
         if self.records.push(record).is_err() {
             self.replace(record);
         }
@@ -335,6 +389,11 @@ impl Record {
             Steps::from_bits(self.x.into()),
             Steps::from_bits(self.y.into()),
         )
+    }
+
+    /// Index of the sensor that it was last seen by.
+    fn sensor(&self) -> u8 {
+        self.eye & SENSOR
     }
 
     /// Puts it elsewhere, if that fits; whether it does.

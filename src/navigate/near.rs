@@ -42,8 +42,6 @@ impl Spot {
 pub struct Near {
     spots: Vec<Spot, MAX_NEAR>,
     least: Steps,
-    /// Points closer than [`CLOSE`].
-    close: usize,
 }
 
 impl Near {
@@ -52,7 +50,6 @@ impl Near {
         Self {
             spots: Vec::new(),
             least: Steps::MAX,
-            close: 0,
         }
     }
 
@@ -71,7 +68,7 @@ impl Near {
             }
         }
         // Twice the same: the first one need not tell shapes apart for every point.
-        (self.least, self.close) = match outline.rectangle() {
+        self.least = match outline.rectangle() {
             Some(rectangle) => measure(&mut self.spots, |at| rectangle.clearance_at_least(at)),
             None => measure(&mut self.spots, |at| outline.clearance_at_least(at)),
         };
@@ -86,11 +83,6 @@ impl Near {
 
     pub(super) fn spots(&self) -> &[Spot] {
         &self.spots
-    }
-
-    /// How many points are so close that what is done there takes most of the work.
-    pub(super) fn close(&self) -> usize {
-        self.close
     }
 
     /// Distance of the nearest point from the outline, or up to a hundredth less; 8 m if there is none.
@@ -143,9 +135,9 @@ impl Near {
     }
 }
 
-/// Works out the clearances and puts the close points first. Returns the least clearance, and how many are close.
+/// Works out the clearances and puts the close points first. Returns the least clearance.
 #[inline(always)]
-fn measure(spots: &mut [Spot], clearance: impl Fn(Vector) -> Steps) -> (Steps, usize) {
+fn measure(spots: &mut [Spot], clearance: impl Fn(Vector) -> Steps) -> Steps {
     let mut least = Steps::MAX;
     let mut close = 0usize;
     for index in 0..spots.len() {
@@ -167,7 +159,7 @@ fn measure(spots: &mut [Spot], clearance: impl Fn(Vector) -> Steps) -> (Steps, u
             close = close.wrapping_add(1);
         }
     }
-    (least, close)
+    least
 }
 
 /// How the body moves until what is decided now takes effect.

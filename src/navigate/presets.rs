@@ -44,7 +44,10 @@ pub fn jackal<const N: usize>() -> NavigatorParams<N> {
 
 /// [`jackal`] with a lidar that is reduced to `N` sectors: its echoes have a direction.
 pub fn jackal_lidar<const N: usize>() -> NavigatorParams<N> {
-    lidar::tuned(base())
+    let mut params = lidar::tuned(base());
+    // Twice as many points: a tick costs more, and the field must not starve.
+    params.field.tick = 900;
+    params
 }
 
 /// [`jackal`] with 8 cones side by side over 270°.
@@ -106,7 +109,7 @@ fn base<const N: usize>() -> NavigatorParams<N> {
             support: m!("0.05"),
             nearer: m!("0.02"),
             snap: false,
-            keep: m!("3"),
+            keep: m!("2.6"),
             lifetime: 1260,
         },
         map: MapParams {
@@ -118,13 +121,13 @@ fn base<const N: usize>() -> NavigatorParams<N> {
         field: FieldParams {
             wall_distance: m!("0.1686"),
             wall: n!("25.03"),
-            halo_distance: m!("0.18"),
-            halo: n!("3.18"),
+            halo_distance: m!("0.07"),
             ahead: m!("0.7"),
             straight: const { Angle::deg("25") },
             shun: 12,
-            budget: 100,
-            refresh: 5,
+            budget: 180,
+            tick: 440,
+            refresh: 6,
         },
         heading: HeadingParams {
             least: m!("0.08"),

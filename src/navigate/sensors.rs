@@ -377,6 +377,7 @@ impl<const N: usize> Echoes<N> {
     /// that is `age` old is taken nearer by `speed · age`, the worst that the robot's own motion can have done.
     pub fn take(&mut self, eyes: &Eyes<N>, readings: &[RangeReading], speed: MetresPerSecond) {
         self.echoes = [Echo::Silent; N];
+        let speed = speed.abs();
         for (echo, (reading, eye)) in self.echoes.iter_mut().zip(readings.iter().zip(&eyes.eyes)) {
             let Range::Echo(distance) = reading.range else {
                 continue;
@@ -384,8 +385,12 @@ impl<const N: usize> Echoes<N> {
             if reading.age > eyes.max_age || distance < Metres::ZERO {
                 continue;
             }
-            let moved = speed.abs().over(reading.age.max(Seconds::ZERO));
-            let range = Steps::of((distance - moved).max(Metres::ZERO));
+            let range = if reading.age > Seconds::ZERO {
+                (distance - speed.over(reading.age)).max(Metres::ZERO)
+            } else {
+                distance
+            };
+            let range = Steps::of(range);
             if range < eyes.max_range {
                 *echo = match eye.width {
                     Angle::ZERO => Echo::At(range, Angle::ZERO),

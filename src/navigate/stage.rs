@@ -9,7 +9,7 @@ pub enum Stage {
     Near,
     /// How far the robot can turn in place.
     Map,
-    /// Where to head: the path, or a slice of the guide field.
+    /// Where to head: the path and what is ahead on it, or along the way that the guide field found.
     Course,
     /// The choice of the heading, and the sectors of the polar map that it asks for.
     Heading,
@@ -19,6 +19,8 @@ pub enum Stage {
     Behave,
     /// Barrier and brake gate.
     Guard,
+    /// A slice of the guide field.
+    Field,
 }
 
 /// Watches a tick from inside.

@@ -192,6 +192,11 @@ impl State {
         self.manoeuvre == Manoeuvre::Follow
     }
 
+    /// Whether it is on its way out of a place.
+    pub fn escapes(&self) -> bool {
+        self.manoeuvre == Manoeuvre::Escape
+    }
+
     /// The manoeuvre of this tick, and what it means for what is remembered.
     pub fn decide(&mut self, params: &SupervisorParams, now: &Situation) -> Decided {
         let given_up = self.strikes >= params.strikes || self.since_least >= params.give_up;

@@ -4,7 +4,7 @@
 //! body's farthest point moves: where there is room, steps are skipped.
 
 use super::footprint::Outline;
-use super::near::Near;
+use super::near::{Near, Spot};
 use super::steps::{Bearing, Steps, Vector};
 use crate::integer::{quotient, ratio, saturate};
 use crate::signals::Twist;
@@ -40,6 +40,10 @@ pub struct Trajectory {
     /// The box of all its places, the first one's among them.
     least: Vector,
     most: Vector,
+    /// Curvature of an arc, 12 fractional bits.
+    arc: Option<i32>,
+    /// How often a point was looked at from one of its places, of all that this has been.
+    pub(super) looked: u32,
 }
 
 /// Fractional bits of [`Turn`].
@@ -83,6 +87,63 @@ impl Turn {
     }
 }
 
+/// What the body sweeps along an arc: between two circles around the point that it turns about. A place p lies
+/// y − κ·|p|²/2 beside the arc, which is (R² − d²)/2R with its distance d from that point and R = 1/κ: h at most on the inner
+/// side, h + (h² + l²)·κ/2 on the outer one, for a body of half width h and half length l.
+#[derive(Clone, Copy, Debug)]
+struct Band {
+    /// 12 fractional bits.
+    curvature: i32,
+    right: Steps,
+    left: Steps,
+}
+
+impl Band {
+    /// Of no arc: everything.
+    const ALL: Self = Self {
+        curvature: 0,
+        right: Steps::from_bits(i32::MIN),
+        left: Steps::from_bits(i32::MAX),
+    };
+
+    /// Curvature, and square of a distance, both with 12 fractional bits, whose product still fits: 7.9/m and 16 m².
+    const MOST: (i32, i32) = (32_358, 1 << 16);
+
+    fn new(arc: Option<i32>, outline: &Outline, margin: Steps) -> Self {
+        /// What poses and clearances are rounded by.
+        const SLACK: Steps = Steps::lit("0.005");
+        let Some(curvature) = arc.filter(|arc| arc.wrapping_abs() <= Self::MOST.0) else {
+            return Self::ALL;
+        };
+        let wide = outline.half_width + margin + SLACK;
+        let long = outline.reach + margin;
+        let squared = wide.squared().wrapping_add(long.squared()) >> 12;
+        let outer = curvature.wrapping_abs().wrapping_mul(squared as i32) >> 13;
+        let outer = wide + Steps::from_bits(outer);
+        let (right, left) = if curvature < 0 {
+            (wide, outer)
+        } else {
+            (outer, wide)
+        };
+        Self {
+            curvature,
+            right: -right,
+            left,
+        }
+    }
+
+    /// Whether the body passes beside a place without touching it.
+    fn passes_beside(&self, at: Vector) -> bool {
+        let squared = (at.norm_squared() >> 12) as i32;
+        if squared > Self::MOST.1 {
+            return false;
+        }
+        let bent = self.curvature.wrapping_mul(squared) >> 13;
+        let beside = at.y - Steps::from_bits(bent);
+        beside < self.right || beside > self.left
+    }
+}
+
 /// Where a trajectory meets a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Contact {
@@ -90,6 +151,8 @@ pub(super) struct Contact {
     pub step: usize,
     /// The part of the next step before it, 8 fractional bits.
     pub part: i32,
+    /// Index of the point.
+    pub spot: usize,
 }
 
 impl Trajectory {
@@ -104,6 +167,8 @@ impl Trajectory {
             turn: Angle::ZERO,
             least: Vector::ZERO,
             most: Vector::ZERO,
+            arc: None,
+            looked: 0,
         }
     }
 
@@ -137,6 +202,7 @@ impl Trajectory {
                 .saturating_mul(fixed::types::I16F16::from_bits(forth.bits())),
         );
         self.steps_are(forth, turn);
+        self.arc = Some(curvature.bits() >> 4);
         let turn = Turn::of(turn);
         for _ in 0..ARC_STEPS {
             if step.bits().wrapping_mul(self.poses.len() as i32) >= length.bits() {
@@ -164,6 +230,7 @@ impl Trajectory {
         self.turn = Angle::ZERO;
         self.least = Vector::ZERO;
         self.most = Vector::ZERO;
+        self.arc = None;
     }
 
     /// Becomes the way of a [braked](Self::braked) twist, in place.
@@ -246,19 +313,36 @@ impl Trajectory {
 
     /// The first place where a point comes closer to the outline than `margin` while it comes closer still. A point that
     /// is too close already and recedes does not count: else the robot could never leave it.
-    pub(super) fn contact(&self, near: &Near, outline: &Outline, margin: Steps) -> Option<Contact> {
-        self.search::<false>(near, outline, margin)
+    pub(super) fn contact(
+        &mut self,
+        near: &Near,
+        outline: &Outline,
+        margin: Steps,
+    ) -> Option<Contact> {
+        self.search::<false>(near.spots(), outline, margin)
     }
 
-    /// Whether there is such a place: the first point found is enough.
-    pub(super) fn touches(&self, near: &Near, outline: &Outline, margin: Steps) -> bool {
-        self.search::<true>(near, outline, margin).is_some()
+    /// The index of a point that has such a place: the first one found is enough. That of `suspect` is looked at before all
+    /// others: what one motion meets the next one like it often meets, too.
+    pub(super) fn touches(
+        &mut self,
+        near: &Near,
+        outline: &Outline,
+        margin: Steps,
+        suspect: Option<usize>,
+    ) -> Option<usize> {
+        let mut meets = |spots: &[Spot]| Some(self.search::<true>(spots, outline, margin)?.spot);
+        let first = suspect.and_then(|index| near.spots().get(index..=index));
+        if first.is_some_and(|spot| meets(spot).is_some()) {
+            return suspect;
+        }
+        meets(near.spots())
     }
 
     /// The first place of all, or of the first point that has one.
     fn search<const ANY: bool>(
-        &self,
-        near: &Near,
+        &mut self,
+        spots: &[Spot],
         outline: &Outline,
         margin: Steps,
     ) -> Option<Contact> {
@@ -279,13 +363,20 @@ impl Trajectory {
         let wide = outline.reach + margin;
         let wide = Vector::new(wide, wide);
         let (least, most) = (self.least - wide, self.most + wide);
-        for spot in near.spots() {
+        let band = Band::new(self.arc, outline, margin);
+        let mut looked = 0u32;
+        let mut later = spots;
+        while let [spot, others @ ..] = later {
+            later = others;
             let mut before = spot.clearance();
             if (before - margin).bits() >= reach {
                 continue;
             }
             let at = spot.at();
             if at.x <= least.x || at.x >= most.x || at.y <= least.y || at.y >= most.y {
+                continue;
+            }
+            if band.passes_beside(at) {
                 continue;
             }
             let mut step = skipped(before - margin);
@@ -297,6 +388,7 @@ impl Trajectory {
                 let [x, y] = [pose.x, pose.y].map(|steps| Steps::from_bits(steps.into()));
                 let place = (at - Vector::new(x, y)).in_frame(pose.turn);
                 let here = outline.clearance_at_least(place);
+                looked = looked.wrapping_add(1);
                 // Where steps were skipped there was room a step ago.
                 if here < margin && (!adjacent || here < before) {
                     let part = if adjacent {
@@ -306,9 +398,10 @@ impl Trajectory {
                     } else {
                         0
                     };
-                    first = Some(Contact { step, part });
+                    let spot = spots.len().wrapping_sub(later.len()).wrapping_sub(1);
+                    first = Some(Contact { step, part, spot });
                     if ANY {
-                        return first;
+                        later = &[];
                     }
                     end = step;
                     break;
@@ -319,11 +412,18 @@ impl Trajectory {
                 step = step.saturating_add(1).saturating_add(more);
             }
         }
+        self.looked = self.looked.wrapping_add(looked);
         first
     }
 
     /// How far along an [arc](Self::arc) in such steps the robot stays clear: all of it at most.
-    pub(super) fn free(&self, near: &Near, outline: &Outline, margin: Steps, step: Steps) -> Steps {
+    pub(super) fn free(
+        &mut self,
+        near: &Near,
+        outline: &Outline,
+        margin: Steps,
+        step: Steps,
+    ) -> Steps {
         let (steps, part) = match self.contact(near, outline, margin) {
             Some(contact) => (contact.step as i32, contact.part),
             None => (self.poses.len() as i32, 0),
@@ -421,4 +521,119 @@ pub(super) fn curvature(twist: Twist, most: PerMetre) -> PerMetre {
 /// A length as a plain quantity of another unit with the same fractional bits.
 pub(super) fn as_metres(speed: MetresPerSecond) -> Metres {
     Metres::from_bits(speed.bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Band, Brakes, Trajectory};
+    use crate::geometry::Point;
+    use crate::navigate::footprint::{Footprint, Outline};
+    use crate::navigate::near::Near;
+    use crate::navigate::steps::{Steps, Vector};
+    use crate::signals::Twist;
+    use crate::units::{Metres, MetresPerSecond, PerMetre, RadiansPerSecond, Seconds};
+
+    /// Numbers that look random, 0 to `end` − 1.
+    fn random(state: &mut u64, end: i32) -> i32 {
+        *state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        ((*state >> 33) % end as u64) as i32
+    }
+
+    fn outlines() -> [Outline; 3] {
+        let at = |x: &str, y: &str| Point::new(Metres::lit(x), Metres::lit(y));
+        let rectangle = Footprint::Rectangle {
+            front: Metres::lit("0.254"),
+            rear: Metres::lit("0.2"),
+            half_width: Metres::lit("0.215"),
+        };
+        let vertices = [
+            at("0.3", "0"),
+            at("0.1", "0.2"),
+            at("-0.3", "0.15"),
+            at("-0.2", "-0.1"),
+        ];
+        let polygon = Footprint::Polygon(heapless::Vec::from_slice(&vertices).unwrap());
+        let disc = Footprint::Disc {
+            radius: Metres::lit("0.2"),
+        };
+        [rectangle, polygon, disc].map(|footprint| {
+            footprint.check().unwrap();
+            footprint.outline()
+        })
+    }
+
+    fn places<const N: usize>(state: &mut u64) -> [Vector; N] {
+        let mut along = || Steps::from_bits(random(state, 16_000) - 8000);
+        core::array::from_fn(|_| Vector::new(along(), along()))
+    }
+
+    #[test]
+    fn what_an_arc_passes_beside_is_what_it_does_not_meet() {
+        let mut state = 3;
+        let (mut met, mut beside) = (0, 0);
+        for outline in &outlines() {
+            for _ in 0..4000 {
+                let curvature = match random(&mut state, 4) {
+                    0 => PerMetre::ZERO,
+                    1 => PerMetre::from_bits(random(&mut state, 24 << 16) - (12 << 16)),
+                    _ => PerMetre::from_bits(random(&mut state, 4 << 16) - (2 << 16)),
+                };
+                let backward = random(&mut state, 2) == 0;
+                let length = Steps::from_bits(random(&mut state, 10_000));
+                let margin = Steps::from_bits(random(&mut state, 400));
+                let mut near = Near::new();
+                let found: [Vector; 6] = places(&mut state);
+                near.collect(found.into_iter(), outline);
+                let mut arc = Trajectory::arc(curvature, backward, length);
+                let contact = arc.contact(&near, outline, margin);
+                let band = Band::new(arc.arc, outline, margin);
+                beside += found.iter().filter(|at| band.passes_beside(**at)).count();
+                // The same poses, of which it is not known that they are an arc.
+                arc.arc = None;
+                assert_eq!(
+                    arc.contact(&near, outline, margin),
+                    contact,
+                    "{curvature:?}"
+                );
+                met += u32::from(contact.is_some());
+            }
+        }
+        assert!(met > 2000 && beside > 20_000, "{met}, {beside}");
+    }
+
+    #[test]
+    fn who_is_suspected_changes_no_answer() {
+        let mut state = 5;
+        let brakes = Brakes {
+            period: Seconds::lit("0.05"),
+            linear: MetresPerSecond::lit("0.125"),
+            angular: RadiansPerSecond::lit("0.4"),
+        };
+        let (mut met, mut other) = (0, 0);
+        for outline in &outlines() {
+            for _ in 0..4000 {
+                let twist = Twist {
+                    linear: MetresPerSecond::from_bits(random(&mut state, 1 << 17) - (1 << 15)),
+                    angular: RadiansPerSecond::from_bits(random(&mut state, 6 << 16) - (3 << 16)),
+                };
+                let margin = Steps::from_bits(random(&mut state, 400));
+                let mut near = Near::new();
+                near.collect(places::<30>(&mut state).into_iter(), outline);
+                let mut way = Trajectory::braked(twist, twist, brakes);
+                let found = way.touches(&near, outline, margin, None);
+                let suspect = random(&mut state, 40) as usize;
+                let again = way.touches(&near, outline, margin, Some(suspect));
+                assert_eq!(found.is_some(), again.is_some(), "{twist:?}");
+                met += u32::from(found.is_some());
+                other += u32::from(again == Some(suspect) && again != found);
+                // Who was found is found again.
+                if let Some(index) = found {
+                    assert_eq!(way.touches(&near, outline, margin, found), Some(index));
+                }
+            }
+        }
+        assert!(met > 2000 && other > 10, "{met}, {other}");
+    }
 }

@@ -8,13 +8,14 @@ use super::grid::{
 use crate::geometry::{Point, square};
 use crate::navigate::steps::{Steps, Vector, retain};
 use crate::units::Metres;
-use fixed::types::I16F16;
 use heapless::Vec;
 
 /// Cells around a point's own that it may make dear, to either side.
-const AROUND: i32 = 2;
+const AROUND: i32 = 1;
 /// And in a row.
-const WIDTH: u32 = 5;
+const WIDTH: u32 = 3;
+/// Farther from a point than this no cell is reached that is not beside its own, wherever in that the point lies.
+pub(super) const MOST_REACH: Metres = Metres::lit("0.29");
 
 /// Places in a cell that are told apart: quarters along both axes.
 const PLACES: usize = 16;
@@ -22,31 +23,26 @@ const PLACES: usize = 16;
 /// Which cells a point makes dear.
 #[derive(Clone, Debug)]
 pub struct Costs {
-    /// By the place in its own cell that a point lies in: for each of the rows around it, the cells of the halo, of its
-    /// inner part and of the wall, [`WIDTH`] bits each.
-    patterns: [[u16; WIDTH as usize]; PLACES],
+    /// By the place in its own cell that a point lies in: the cells around it of the halo and of the wall, [`WIDTH`] bits a
+    /// row, the lowest row first.
+    patterns: [u32; PLACES],
     /// Cost of a wall's cell.
     pub(super) wall: u8,
 }
 
+/// Bits of a level in a pattern.
+const BITS: u32 = WIDTH * WIDTH;
+
 impl Costs {
     pub(in crate::navigate) fn new(params: &FieldParams) -> Self {
-        // Within these distances of a point: a halo's factor is rounded to 1, 1½ or 3.
-        let halo = |factor: I16F16| {
-            let part = params.halo_distance.bits();
-            let beyond =
-                crate::integer::ratio(part, factor.to_bits(), params.halo.to_bits().max(1));
-            let least = part.saturating_sub(beyond).max(0);
-            Steps::of(params.wall_distance + Metres::from_bits(least))
-        };
+        // Within these distances of a point.
         let reaches = [
-            halo(const { I16F16::lit("0.25") }),
-            halo(const { I16F16::lit("1.25") }),
-            Steps::of(params.wall_distance),
+            params.wall_distance + params.halo_distance,
+            params.wall_distance,
         ]
-        .map(Steps::squared);
-        let mut patterns = [[0; WIDTH as usize]; PLACES];
-        for (place, rows) in (0..PLACES as i32).zip(&mut patterns) {
+        .map(|reach| Steps::of(reach).squared());
+        let mut patterns = [0; PLACES];
+        for (place, pattern) in (0..PLACES as i32).zip(&mut patterns) {
             let eighths = |quarter: i32| {
                 CELL.bits()
                     .wrapping_mul(quarter.wrapping_mul(2).wrapping_add(1))
@@ -56,14 +52,14 @@ impl Costs {
                 Steps::from_bits(eighths(place & 3)),
                 Steps::from_bits(eighths(place >> 2)),
             );
-            for (row, cells) in (-AROUND..=AROUND).zip(rows) {
-                for (bit, column) in (0..WIDTH).zip(-AROUND..=AROUND) {
-                    let away = (middle(column, row) - at).norm_squared();
-                    for (level, reach) in (0u32..).zip(&reaches) {
-                        if away < *reach {
-                            *cells |=
-                                1u16.wrapping_shl(level.wrapping_mul(WIDTH).wrapping_add(bit));
+            let mut bit = 1u32;
+            for reach in reaches {
+                for row in -AROUND..=AROUND {
+                    for column in -AROUND..=AROUND {
+                        if (middle(column, row) - at).norm_squared() < reach {
+                            *pattern |= bit;
                         }
+                        bit = bit.wrapping_shl(1);
                     }
                 }
             }
@@ -77,7 +73,7 @@ impl Costs {
         let (x, y) = quarters_of(place);
         let before = |quarters: i32| (quarters >> 2).wrapping_sub(AROUND).cast_unsigned();
         let (left, below) = (before(x), before(y));
-        if left > COLUMNS as u32 - WIDTH || below > ROWS as u32 - WIDTH {
+        if left > COLUMNS as u32 - WIDTH {
             return;
         }
         let [x, y] = [x, y].map(|quarters| quarters as usize & 3);
@@ -85,37 +81,44 @@ impl Costs {
         let Some(rows) = rows.and_then(<[Row]>::first_chunk_mut::<{ WIDTH as usize }>) else {
             return;
         };
-        let pattern = &self.patterns[y << 2 | x];
+        let pattern = self.patterns[y << 2 | x];
         // Spelled out: a loop would cost half as much again.
-        put(&mut rows[0], pattern[0], left);
-        put(&mut rows[1], pattern[1], left);
-        put(&mut rows[2], pattern[2], left);
-        put(&mut rows[3], pattern[3], left);
-        put(&mut rows[4], pattern[4], left);
+        put(&mut rows[0], pattern, left);
+        put(&mut rows[1], pattern >> WIDTH, left);
+        put(&mut rows[2], pattern >> (2 * WIDTH), left);
     }
 }
 
-/// Enters a row of a pattern, from this column on.
+/// Enters a pattern's lowest row, from this column on.
 #[inline(always)]
-fn put(row: &mut Row, pattern: u16, left: u32) {
-    let level = |level: u32| {
-        let cells = u32::from(pattern) >> (level * WIDTH) & ((1 << WIDTH) - 1);
-        cells.wrapping_shl(left)
-    };
-    row[OUTER] |= level(0);
-    row[INNER] |= level(1);
-    row[WALL] |= level(2);
+fn put(row: &mut Row, pattern: u32, left: u32) {
+    const ROW: u32 = (1 << WIDTH) - 1;
+    row[INNER] |= (pattern & ROW).wrapping_shl(left);
+    row[WALL] |= (pattern >> BITS & ROW).wrapping_shl(left);
 }
 
-/// Makes every level hold the dearer ones, too.
+/// Puts the halo's outer part beside the cells of its inner one, and makes every level hold the dearer ones, too.
 pub(super) fn nest(ground: &mut Ground) {
-    for row in ground {
-        let mut above = 0;
+    let mut below = 0;
+    for index in 0..ROWS {
+        let above = ground.get(index.wrapping_add(1)).map_or(0, inner);
+        let Some(row) = ground.get_mut(index) else {
+            break;
+        };
+        let here = inner(row);
+        row[OUTER] |= below | above | here << 1 | here >> 1;
+        below = here;
+        let mut dearer = 0;
         for level in row.iter_mut().rev() {
-            *level |= above;
-            above = *level;
+            *level |= dearer;
+            dearer = *level;
         }
     }
+}
+
+/// The cells of a halo's inner part, before or after the levels are nested.
+fn inner(row: &Row) -> u32 {
+    row[INNER] | row[WALL]
 }
 
 /// The level that comes nearest to a cost added to a free cell's, in quarters of that.
@@ -218,11 +221,9 @@ mod tests {
     fn a_cell_is_dear_by_its_distance_from_a_point() {
         let mut params = presets::jackal::<16>().field;
         params.wall_distance = Metres::lit("0.17");
-        params.halo_distance = Metres::lit("0.2");
-        params.halo = fixed::types::I16F16::lit("2");
+        params.halo_distance = Metres::lit("0.09");
         let costs = Costs::new(&params);
-        // Factors of 1¼ and 2¼ are an eighth and five eighths of the way through the halo.
-        let reaches = [(OUTER, "0.345"), (INNER, "0.245"), (WALL, "0.17")];
+        let reaches = [(INNER, "0.26"), (WALL, "0.17")];
         // A point is moved to the middle of its quarter of a cell.
         let moved = Steps::lit("0.033");
         for x in (2300..2300 + 737).step_by(61) {
@@ -231,6 +232,14 @@ mod tests {
                 let mut ground: Ground = [[0; LEVELS]; ROWS];
                 costs.stamp(&mut ground, point);
                 nest(&mut ground);
+                // The outer part of the halo are the cells beside its inner one.
+                let inner = |row: usize| ground.get(row).map_or(0, |levels| levels[INNER]);
+                for (row, levels) in ground.iter().enumerate() {
+                    let here = inner(row);
+                    let beside =
+                        inner(row.wrapping_sub(1)) | inner(row + 1) | here << 1 | here >> 1;
+                    assert_eq!(levels[OUTER], here | beside, "{x}, {y}: {row}");
+                }
                 for (level, reach) in reaches {
                     let reach = Steps::lit(reach);
                     for (row, levels) in (0..).zip(&ground) {

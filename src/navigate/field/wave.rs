@@ -264,35 +264,45 @@ impl Wave {
                 self.approach();
             }
             let rows = self.rows.1.wrapping_sub(self.rows.0);
-            *budget = budget.wrapping_sub(1).wrapping_sub(i32::from(rows) / 4);
+            *budget = budget.wrapping_sub(1).wrapping_sub(i32::from(rows) / 2);
             self.pass_on(ground, wall);
         }
         false
     }
 
     /// A round.
-    #[allow(clippy::needless_range_loop, reason = "three arrays by one row")]
     fn pass_on(&mut self, ground: &Ground, wall: u8) {
         self.round = self.round.saturating_add(1);
         let (closed, wide) = self.clocks.next(wall);
         let level = closed.unwrap_or(0) & (LEVELS - 1);
         let shut = if closed.is_some() { u32::MAX } else { 0 };
+        let wide = if wide { u32::MAX } else { 0 };
         let (first, end) = self.rows;
-        let start = usize::from(first).min(ROWS - 1);
-        let mut below = self.reached[start];
-        let mut here = self.reached[start + 1];
+        let start = usize::from(first).min(ROWS);
+        let rows = start..usize::from(end).min(ROWS).max(start);
         let (mut lowest, mut highest) = (0, 0);
-        for row in start..usize::from(end).min(ROWS) {
-            let above = self.reached[row + 2];
-            let column = below | above;
-            let (near, aside) = if wide {
-                (column | here, column | here)
-            } else {
-                (column, here)
-            };
-            let fresh = near | aside << 1 | aside >> 1 | self.entered[row];
-            let fresh = fresh & !(ground[row][level] & shut) & !here;
-            (below, here) = (here, above);
+        let last = rows.end.wrapping_add(2);
+        let (Some(ground), Some(entered), Some(reached)) = (
+            ground.get(rows.clone()),
+            self.entered.get(rows.clone()),
+            self.reached.get_mut(rows.start..last),
+        ) else {
+            return;
+        };
+        let [below, here, reached @ ..] = reached else {
+            return;
+        };
+        let (mut below, mut place) = (*below, here);
+        for (row, ((above, ground), entered)) in
+            (rows.start..).zip(reached.iter_mut().zip(ground).zip(entered))
+        {
+            let here = *place;
+            let column = below | *above;
+            let aside = here | column & wide;
+            let fresh = column | aside << 1 | aside >> 1 | *entered;
+            let fresh = fresh & !(ground[level] & shut) & !here;
+            *place = here | fresh;
+            (below, place) = (here, above);
             highest = fresh;
             if row == start {
                 lowest = fresh;
@@ -300,7 +310,6 @@ impl Wave {
             if fresh == 0 {
                 continue;
             }
-            self.reached[row + 1] |= fresh;
             if let Some(rounds) = self.rounds.get_mut(row.wrapping_sub(FIRST.1)) {
                 let mut fresh = fresh >> FIRST.0 & ((1 << NOTED) - 1);
                 while fresh != 0 {

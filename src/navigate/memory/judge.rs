@@ -18,6 +18,8 @@ pub(super) struct Judge<'a, const N: usize> {
     eyes: &'a Eyes<N>,
     echoes: &'a Echoes<N>,
     bands: [Band; N],
+    /// Sensors that hear something, a bit each.
+    pub heard: u32,
     snap: bool,
     /// The body in the points' frame.
     body: Vector,
@@ -42,8 +44,14 @@ struct Band {
     explained: u32,
 }
 
-/// Points farther away than this, and those that no sensor saw, are looked at in a quarter of the ticks.
-const FAR: Steps = Steps::lit("1.3");
+/// Points farther away than this are looked at less often.
+const FAR_AWAY: Steps = Steps::lit("1.3");
+
+/// Bits of a record's sensor that are its index.
+pub(super) const SENSOR: u8 = 31;
+
+/// Bit of a record's sensor: it was far away when it was last looked at.
+pub(super) const FAR: u8 = 1 << 6;
 
 /// Bit of a record's sensor: it was not seen when it was last looked at.
 pub(super) const UNSEEN: u8 = 1 << 7;
@@ -65,10 +73,15 @@ impl<'a, const N: usize> Judge<'a, N> {
         let [disproof, support, nearer] =
             [params.disproof, params.support, params.nearer].map(Steps::of);
         let mut bands = [NONE; N];
+        let mut heard = 0;
+        let mut bit = 1u32;
         for (band, echo) in bands.iter_mut().zip(echoes.as_slice()) {
+            let this = bit;
+            bit = bit.wrapping_shl(1);
             let Some(range) = echo.range() else {
                 continue;
             };
+            heard |= this;
             let square = |limit: Steps| limit.max(Steps::ZERO).squared();
             *band = Band {
                 disproved: square(range - disproof),
@@ -82,6 +95,7 @@ impl<'a, const N: usize> Judge<'a, N> {
             eyes,
             echoes,
             bands,
+            heard,
             snap: params.snap,
             body: memory.body,
             forward: memory.forward,
@@ -92,30 +106,33 @@ impl<'a, const N: usize> Judge<'a, N> {
         }
     }
 
-    /// Supports or doubts a point; whether it is kept. Sets the bits of sensors whose echo it explains.
+    /// Supports or doubts a point; whether it is kept. Sets the bits of sensors whose echo it explains, and `behind` if it lies
+    /// a little behind an echo.
     #[inline(always)]
-    pub fn keeps(&self, record: &mut Record, explained: &mut u32, rests: bool) -> bool {
+    pub fn keeps(&self, record: &mut Record, explained: &mut u32, behind: &mut bool) -> bool {
         let seen = record.at() - self.body;
         let away = seen.norm_squared();
-        if rests && (away > const { FAR.squared() } || record.eye & UNSEEN != 0) {
-            return true;
-        }
         if away > self.keep || self.now.wrapping_sub(record.seen) > self.lifetime {
             return false;
         }
+        let far = if away > const { FAR_AWAY.squared() } {
+            FAR
+        } else {
+            0
+        };
         let place = seen.in_frame(self.forward);
         if away < self.reach && self.outline.covers(place, DEEP) {
             return false;
         }
-        let mut hint = record.eye & !UNSEEN;
+        let mut hint = record.sensor();
         let mut unseen = UNSEEN;
         let kept = self
             .eyes
             .seeing(place, &mut hint, |index, eye, from_eye, view| {
-                unseen = 0;
                 let Some(band) = self.bands.get(index) else {
                     return true;
                 };
+                unseen = 0;
                 let distance = from_eye.norm_squared();
                 if view == View::Sure && distance < band.disproved {
                     record.confidence = record.confidence.saturating_sub(1);
@@ -126,6 +143,8 @@ impl<'a, const N: usize> Judge<'a, N> {
                     record.seen = self.now;
                     if distance < band.explained {
                         *explained |= 1u32.wrapping_shl(index as u32);
+                    } else {
+                        *behind = true;
                     }
                     if self.snap
                         && let Some(range) =
@@ -138,7 +157,7 @@ impl<'a, const N: usize> Judge<'a, N> {
                 }
                 true
             });
-        record.eye = hint | unseen;
+        record.eye = hint | unseen | far;
         kept
     }
 }

@@ -19,8 +19,7 @@ pub(super) fn tuned<const N: usize>(mut params: NavigatorParams<N>) -> Navigator
     params.map.turning = m!("0.0237");
     params.field.wall_distance = m!("0.1438");
     params.field.wall = n!("25.1505");
-    params.field.halo_distance = m!("0.1795");
-    params.field.halo = n!("3.5603");
+    params.field.halo_distance = m!("0.08");
     params.field.ahead = m!("0.8066");
     params.field.shun = 14;
     params.heading.least = m!("0.1643");

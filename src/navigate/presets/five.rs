@@ -19,8 +19,7 @@ pub(super) fn tuned<const N: usize>(mut params: NavigatorParams<N>) -> Navigator
     params.map.turning = m!("0.0079");
     params.field.wall_distance = m!("0.1681");
     params.field.wall = n!("28.4592");
-    params.field.halo_distance = m!("0.1898");
-    params.field.halo = n!("4");
+    params.field.halo_distance = m!("0.08");
     params.field.ahead = m!("0.6098");
     params.field.shun = 8;
     params.heading.least = m!("0.1218");

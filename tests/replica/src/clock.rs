@@ -140,7 +140,7 @@ pub fn empty_stage() -> u32 {
 }
 
 /// Stages of a navigator's tick.
-const PARTS: usize = 8;
+const PARTS: usize = 9;
 
 /// Counts every stage of one tick of a navigator.
 pub struct Marks {

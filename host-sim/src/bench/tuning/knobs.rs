@@ -130,7 +130,7 @@ macro_rules! knob {
 }
 
 /// All that can move. The peaks' ranges do not meet, so that their order stays.
-pub static KNOBS: [Knob; 44] = [
+pub static KNOBS: [Knob; 43] = [
     knob!(metres memory.insert, 0.6 to 2.6),
     knob!(number memory.arc, 0.2 to 1.0),
     knob!(metres memory.disproof, 0.01 to 0.15),
@@ -140,10 +140,9 @@ pub static KNOBS: [Knob; 44] = [
     knob!(metres map.hard, 0.0 to 0.05),
     knob!(metres map.soft, 0.03 to 0.2),
     knob!(metres map.turning, 0.002 to 0.05),
-    knob!(metres field.wall_distance, 0.1 to 0.25),
+    knob!(metres field.wall_distance, 0.1 to 0.21),
     knob!(number field.wall, 8.0 to 60.0),
-    knob!(metres field.halo_distance, 0.05 to 0.2),
-    knob!(number field.halo, 0.3 to 4.0),
+    knob!(metres field.halo_distance, 0.02 to 0.08),
     knob!(metres field.ahead, 0.35 to 1.0),
     knob!(count field.shun, 0.0 to 40.0),
     knob!(metres heading.least, 0.02 to 0.4),

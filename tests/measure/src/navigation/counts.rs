@@ -10,16 +10,17 @@ use comfy_table::{Table, presets::NOTHING};
 use replica::tape::Mode;
 
 /// What is counted: key in the file, and words for people. The stages in the order of `fuzzypilot::navigate::Stage`.
-pub const COUNTED: [(&str, &str); 9] = [
+pub const COUNTED: [(&str, &str); 10] = [
     ("whole-tick", "**whole tick**"),
     ("remember", "echoes into the memory"),
     ("near", "points near the predicted body"),
     ("map", "room to turn in place"),
-    ("course", "path or a slice of the guide field"),
+    ("course", "the path, or the way of the guide field"),
     ("heading", "polar map and choice of the heading"),
     ("supervise", "supervisor"),
     ("behave", "the manoeuvre's twist"),
     ("guard", "barrier and brake gate"),
+    ("field", "a slice of the guide field"),
 ];
 
 /// Counts of one thing.
@@ -43,7 +44,7 @@ pub struct Needs {
     /// The machine's key and name.
     pub core: (&'static str, &'static str),
     /// By [`COUNTED`].
-    pub instructions: [Spread; 9],
+    pub instructions: [Spread; 10],
     /// Bytes of the navigator, of its settings, and of the deepest stack of a tick.
     pub bytes: [u32; 3],
     /// Where the stack was deepest.
@@ -63,12 +64,12 @@ pub fn count(
         let outcome = machine.run(&image, folder.path(), &file(mode, tapes), time)?;
         outcome.words()
     };
-    let samples = |tapes: &[Tape]| -> anyhow::Result<[Vec<(u32, usize)>; 9]> {
+    let samples = |tapes: &[Tape]| -> anyhow::Result<[Vec<(u32, usize)>; 10]> {
         let whole = calibrated(machine, &play(Mode::Ticks, Time::Counted, tapes)?)?;
         let stages = calibrated(machine, &play(Mode::Stages, Time::Counted, tapes)?)?;
         let whole = by_tick(tapes, &whole, 1)?;
         let stages = by_tick(tapes, &stages, COUNTED.len() - 1)?;
-        let mut samples: [Vec<(u32, usize)>; 9] = Default::default();
+        let mut samples: [Vec<(u32, usize)>; 10] = Default::default();
         for (tick, (whole, stages)) in whole.iter().zip(&stages).enumerate() {
             let counts = whole.iter().chain(stages.iter());
             for (samples, count) in samples.iter_mut().zip(counts) {
@@ -85,7 +86,7 @@ pub fn count(
     };
     let mut ordinary = samples(tapes)?;
     let invented = samples(contrived)?;
-    let mut instructions: [Spread; 9] = Default::default();
+    let mut instructions: [Spread; 10] = Default::default();
     for ((spread, ordinary), invented) in instructions.iter_mut().zip(&mut ordinary).zip(&invented)
     {
         ordinary.sort_unstable();
