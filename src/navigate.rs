@@ -205,7 +205,7 @@ impl<const N: usize> Navigator<N> {
     ) -> NavigationRecord {
         let p = &setup.params;
         let outline = &setup.outline;
-        self.health.update(&p.health, self.echoes.as_slice());
+        self.health.update(&p.health, self.echoes.of(&setup.eyes));
         self.memory.update(
             &p.memory,
             outline,
@@ -253,6 +253,7 @@ impl<const N: usize> Navigator<N> {
                     last: self.chosen - ahead.heading,
                     distance: course.distance,
                     look: Steps::of(p.map.look),
+                    judged: self.memory.judged(),
                     briefly: self.supervisor.escapes(),
                 },
             )
@@ -425,12 +426,11 @@ impl<const N: usize> Navigator<N> {
             }
             (Manoeuvre::Escape, ..) => {
                 self.chosen = ahead.heading;
-                let margin = p.barrier.margin;
                 self.escape.drive(
                     &self.near,
                     &setup.outline,
                     &self.map,
-                    margin,
+                    &p.barrier,
                     course.direction,
                 )
             }
@@ -475,6 +475,7 @@ impl<const N: usize> Navigator<N> {
             &self.near,
             &setup.outline,
             room,
+            setup.brakes,
             self.last,
             wanted,
         );

@@ -3,9 +3,11 @@
 
 use fixed::types::{I8F24, I16F16};
 use fuzzypilot::geometry::Point;
-use fuzzypilot::navigate::{BarrierParams, Brakes, Footprint, Guarded, Motion, Near, Vector, gate};
+use fuzzypilot::navigate::{
+    BarrierParams, Brakes, Footprint, Guarded, Motion, Near, Outline, Vector, gate, slow,
+};
 use fuzzypilot::signals::Twist;
-use fuzzypilot::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds};
+use fuzzypilot::units::{Angle, Metres, MetresPerSecond, RadiansPerSecond, Seconds};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -87,19 +89,27 @@ impl Robot {
     }
 }
 
-fn guarded(robot: &Robot, before: [f64; 2], points: &[[f64; 2]], wanted: [f64; 2]) -> Guarded {
-    let outline = Footprint::Rectangle {
+fn outline() -> Outline {
+    Footprint::Rectangle {
         front: Metres::new(number(HALF[0])),
         rear: Metres::new(number(HALF[0])),
         half_width: Metres::new(number(HALF[1])),
     }
-    .outline();
-    let params = BarrierParams {
+    .outline()
+}
+
+fn barrier() -> BarrierParams {
+    BarrierParams {
         margin: Metres::new(number(0.02)),
+        behind: Metres::new(number(0.04)),
         braking: number(1.0),
         share: number(0.9),
         gate: Metres::new(number(GATE)),
-    };
+    }
+}
+
+fn guarded(robot: &Robot, before: [f64; 2], points: &[[f64; 2]], wanted: [f64; 2]) -> Guarded {
+    let (outline, params) = (outline(), barrier());
     let vector = |p: &[f64; 2]| {
         let [x, y] = robot.to_body(*p);
         Vector::of(Point::new(Metres::new(number(x)), Metres::new(number(y))))
@@ -213,4 +223,39 @@ fn extreme_twists_end() {
         [30_000.0, 30_000.0],
     );
     assert!(passed.twist.linear <= MetresPerSecond::MAX);
+}
+
+/// What limits no speed that the next period can reach need not be looked for: the next twist is the same as if the arcs were
+/// looked along as far as the wanted speed asks for.
+#[test]
+fn a_short_look_slows_the_next_period_as_a_long_one() {
+    let (outline, params) = (outline(), barrier());
+    let room = (Angle::from_bits(i32::MAX), Angle::from_bits(i32::MAX));
+    let tireless = Brakes {
+        linear: MetresPerSecond::new(number(8.0)),
+        ..brakes()
+    };
+    let tries = (
+        prop::collection::vec((-1.5..1.5f64, -1.0..1.0f64), 12),
+        // Driven and wanted speeds, and one curvature: two that nearly agree count as one, the more so the shorter the look.
+        (0.0..1.2f64, 0.0..2.0f64, -2.0..2.0f64),
+    );
+    let mut runner = TestRunner::deterministic();
+    let (mut slowed, mut shorter) = (0, 0);
+    for _ in 0..4000 {
+        let (points, (driven, wanted, curvature)) = tries.new_tree(&mut runner).unwrap().current();
+        let mut near = Near::new();
+        let points = points.iter().filter(|(x, y)| clearance([*x, *y]) > 0.0);
+        let places = points
+            .map(|(x, y)| Vector::of(Point::new(Metres::new(number(*x)), Metres::new(number(*y)))));
+        near.collect(places, &outline);
+        let [driven, wanted] = [driven, wanted].map(|v| twist([v, v * curvature]));
+        let look = |brakes| slow(&params, &near, &outline, room, brakes, driven, wanted);
+        let ((short, few), (long, many)) = (look(brakes()), look(tireless));
+        let next = |slowed| brakes().toward(driven, slowed);
+        assert_eq!(next(short), next(long), "{driven:?} {wanted:?}");
+        slowed += u32::from(next(short) != next(wanted));
+        shorter += u32::from(few < many);
+    }
+    assert!(slowed > 400 && shorter > 400, "{slowed}, {shorter}");
 }

@@ -389,6 +389,47 @@ fn an_obstacle_that_is_neared_does_not_fill_the_memory() {
     assert!((1..=4).contains(&most), "{most}");
 }
 
+/// A post is seen from all around as the robot passes: a place of its surface is remembered once.
+#[test]
+fn a_lidar_that_passes_a_post_does_not_fill_the_memory_with_it() {
+    let setup = presets::jackal_lidar::<32>().setup().unwrap();
+    let mut navigator: Navigator<32> = Navigator::new();
+    for tick in 0..170 {
+        let x = 0.01 * f64::from(tick);
+        let (px, py, radius) = (1.0 - x, 0.45, 0.1);
+        let beams = (0..720).map(|i| {
+            let direction = (f64::from(i) - 359.5) * 1.5 * PI / 720.0;
+            let (sin, cos) = direction.sin_cos();
+            let (along, beside) = (px * cos + py * sin, py * cos - px * sin);
+            let range = if along > 0.0 && beside.abs() < radius {
+                along - (radius * radius - beside * beside).sqrt()
+            } else {
+                0.0
+            };
+            (angle(direction), metres(range))
+        });
+        navigator.see_scan(&setup, beams);
+        let pose = Pose::new(point([x, 0.0]), Angle::ZERO);
+        navigator.step(&setup, pose, Task::Goal(point([9.0, 0.0])));
+    }
+    // Two thirds of its circumference were seen: 0.42 m.
+    let points = navigator.memory().len();
+    assert!((6..=12).contains(&points), "{points}");
+}
+
+#[test]
+fn what_is_no_sensor_is_not_dead() {
+    let mut params = presets::jackal::<32>();
+    params.sensors.mounts.truncate(8);
+    let setup = params.setup().unwrap();
+    let mut navigator: Navigator<32> = Navigator::new();
+    for _ in 0..60 {
+        navigator.see(&setup, &[RangeReading::fresh(Range::Echo(metres(1.0))); 8]);
+        let record = navigator.step(&setup, Pose::default(), Task::Goal(point([50.0, 0.0])));
+        assert_eq!(record.dead, 0);
+    }
+}
+
 #[test]
 fn a_dead_cone_ahead_is_found_out_and_caps_the_speed() {
     let mut ranges = [2.0; 16];

@@ -28,6 +28,7 @@ use super::near::Near;
 use super::steps::Steps;
 use super::trajectory::{Brakes, Trajectory, as_metres, curvature};
 use crate::geometry::root;
+use crate::integer::ratio;
 use crate::signals::Twist;
 use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
 use fixed::types::I16F16;
@@ -37,12 +38,21 @@ use fixed::types::I16F16;
 pub struct BarrierParams {
     /// Margin of the arc barrier.
     pub margin: Metres,
+    /// The same backward, where nothing is seen: what is remembered there may be the near end of something.
+    pub behind: Metres,
     /// Deceleration that the arc barrier plans with, m/s².
     pub braking: I16F16,
     /// Share of the planned speed that is used, 0 to 1.
     pub share: I16F16,
     /// Margin of the brake gate.
     pub gate: Metres,
+}
+
+impl BarrierParams {
+    /// Margin of an arc.
+    pub(super) fn arc_margin(&self, backward: bool) -> Steps {
+        Steps::of(if backward { self.behind } else { self.margin })
+    }
 }
 
 /// What the barrier made of a wanted twist.
@@ -63,13 +73,18 @@ pub struct Guarded {
 /// No arc is followed that is tighter than this.
 const TIGHTEST: PerMetre = PerMetre::lit("6");
 
+/// Arcs that lie no farther apart than this where they end are one.
+const ONE: Steps = Steps::lit("0.01");
+
 /// Speed of the wanted twist limited by the free length of the arcs ahead, and how often a point was looked at for that.
-/// `room` are the angles that the robot can turn in place to the left and right.
+/// `room` are the angles that the robot can turn in place to the left and right. Only what limits a speed that `brakes` allow
+/// in the next period is looked for: a robot that is slow in a crowd looks along short arcs, however fast it wants to be.
 pub fn slow(
     params: &BarrierParams,
     near: &Near,
     outline: &Outline,
     room: (Angle, Angle),
+    brakes: Brakes,
     driven: Twist,
     wanted: Twist,
 ) -> (Twist, u32) {
@@ -77,24 +92,27 @@ pub fn slow(
     let arcs = [curvature(wanted, TIGHTEST), curvature(driven, TIGHTEST)];
     let backward = wanted.linear < MetresPerSecond::ZERO;
     let speed = Steps::of(as_metres(wanted.linear.abs()));
-    let looked = lookahead(params, speed);
+    let fastest = Steps::of(as_metres(driven.linear.abs() + brakes.linear));
+    let mut length = lookahead(params, speed).min(needed(params, fastest, speed));
     let mut way = Trajectory::new();
     for (driving, arc) in [(false, arcs[0]), (true, arcs[1])] {
         // The arc being driven matters if it is another, and in the direction that is wanted.
         let same = driving
             && ((arc - arcs[0]).abs() < const { PerMetre::lit("0.05") }
+                || apart(arc - arcs[0], length) < ONE
                 || (driven.linear < MetresPerSecond::ZERO) != backward
                 || driven.linear.abs() < const { MetresPerSecond::lit("0.15") });
         if same || speed == Steps::ZERO {
             continue;
         }
-        let step = way.bend(arc, backward, looked);
-        let free = way.free(near, outline, Steps::of(params.margin), step);
-        if free >= looked {
+        let step = way.bend(arc, backward, length);
+        let free = way.free(near, outline, params.arc_margin(backward), step);
+        if free >= length {
             continue;
         }
         let allowed = allowed(params, free, speed);
         twist.linear = twist.linear.limit(allowed);
+        length = free;
     }
     (limit_turning(twist, room), way.looked)
 }
@@ -106,6 +124,28 @@ fn lookahead(params: &BarrierParams, speed: Steps) -> Steps {
         .checked_div(braking.bits().unsigned_abs())
         .unwrap_or(0);
     Steps::from_bits(way as i32) + Steps::from_bits(speed.bits() / 10) + const { Steps::lit("0.1") }
+}
+
+/// Free length that [allows](allowed) `most` to a robot that wants `speed`, a little more:
+/// (most/share)²/2a + 0.02 m + 0.03 s·speed.
+fn needed(params: &BarrierParams, most: Steps, speed: Steps) -> Steps {
+    const WIDEST: i32 = Steps::lit("8").bits();
+    let share = params.share.to_bits().max(1);
+    let planned = Steps::from_bits(ratio(1 << 16, most.bits(), share).min(WIDEST));
+    let braking = Steps::of(Metres::new(params.braking)).max(Steps::from_bits(1));
+    let way = (planned.squared() >> 1)
+        .checked_div(braking.bits().unsigned_abs())
+        .unwrap_or(0);
+    Steps::from_bits(way.min(WIDEST.unsigned_abs()) as i32)
+        + Steps::from_bits(speed.bits().wrapping_mul(3) / 100)
+        + const { Steps::lit("0.021") }
+}
+
+/// How far arcs whose curvatures differ lie apart after a length: κ·s²/2.
+fn apart(curvature: PerMetre, length: Steps) -> Steps {
+    let squared = u64::from(length.squared() >> 12);
+    let twice = u64::from(curvature.bits().unsigned_abs()).wrapping_mul(squared) >> 16;
+    Steps::from_bits((twice >> 1).min(1 << 15) as i32)
 }
 
 /// share · √(2·a·(free − 0.02 m − 0.03 s·v)).
@@ -154,17 +194,13 @@ pub fn gate(
     let margin = Steps::of(params.gate);
     let rest = Twist::REST;
     let halved = MetresPerSecond::from_bits(wanted.linear.bits() >> 1);
-    // Slower, still, straighter, hardly turning, at rest.
+    // Slower, still, straighter, at rest.
     let gentler = |index: usize| match index {
         0 => (halved, wanted.angular),
         1 => (MetresPerSecond::ZERO, wanted.angular),
         2 => (
             halved,
             RadiansPerSecond::from_bits(driven.angular.bits() >> 1),
-        ),
-        3 => (
-            MetresPerSecond::ZERO,
-            RadiansPerSecond::from_bits(wanted.angular.bits() / 2),
         ),
         _ => (MetresPerSecond::ZERO, RadiansPerSecond::ZERO),
     };
@@ -182,7 +218,7 @@ pub fn gate(
             ..Guarded::default()
         };
     }
-    for index in 0..5 {
+    for index in 0..4 {
         let (linear, angular) = gentler(index);
         let twist = brakes.toward(driven, Twist { linear, angular });
         if passes(&mut way, twist) {

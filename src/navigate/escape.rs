@@ -1,12 +1,13 @@
 //! Out of a place where no heading is admissible: the best of six short arcs, three of them backward, or a turn in place.
 
+use super::barrier::BarrierParams;
 use super::footprint::Outline;
 use super::near::Near;
 use super::polar::PolarMap;
 use super::steps::Steps;
 use super::trajectory::Trajectory;
 use crate::signals::Twist;
-use crate::units::{Angle, Metres, MetresPerSecond, PerMetre, RadiansPerSecond};
+use crate::units::{Angle, MetresPerSecond, PerMetre, RadiansPerSecond};
 
 /// Speed of an arc.
 const SPEED: MetresPerSecond = MetresPerSecond::lit("0.28");
@@ -70,7 +71,7 @@ impl Escape {
         near: &Near,
         outline: &Outline,
         map: &PolarMap,
-        margin: Metres,
+        barrier: &BarrierParams,
         direction: Angle,
     ) -> Twist {
         self.looked_at = 0;
@@ -81,7 +82,8 @@ impl Escape {
         // One a tick: it costs as much as half a guard.
         if let Some(bent) = ARCS.get(usize::from(self.looked)) {
             self.looked = self.looked.wrapping_add(1);
-            let (choice, looked_at) = arc(near, outline, Steps::of(margin), direction, *bent);
+            let margin = barrier.arc_margin(bent.0);
+            let (choice, looked_at) = arc(near, outline, margin, direction, *bent);
             self.looked_at = looked_at.wrapping_add(15);
             let better = |known: Choice| match (known, choice) {
                 (Some((known, _)), Some((worth, _))) => worth > known,

@@ -85,6 +85,8 @@ pub struct Wanted {
     pub distance: Steps,
     /// Look range of the map.
     pub look: Steps,
+    /// Points of the memory that the tick has looked at.
+    pub judged: u32,
     /// Whether there is one matters more than which.
     pub briefly: bool,
 }
@@ -124,7 +126,8 @@ pub fn choose(
     let mut most = consider(&mut costs, 0);
     let points = near.spots().len() as u32;
     let enough = if wanted.briefly { BRIEFLY } else { ENOUGH };
-    let enough = enough.min(ENOUGH_POINTS.checked_div(points).unwrap_or(ENOUGH));
+    let looks = LOOKS.saturating_sub(wanted.judged.wrapping_mul(JUDGED));
+    let enough = enough.min(looks.checked_div(points).unwrap_or(ENOUGH));
     for step in 1..=SECTORS / 2 {
         let least_off = Angle::from_bits(((step as i32) << 26).wrapping_sub(1 << 25));
         if Weights::angle(weights.toward, least_off) >= most || costs.map.looked() >= enough {
@@ -145,7 +148,9 @@ pub fn choose(
 /// When so many sectors were looked along, the best one so far has to do: that bounds a tick. Fewer where many points are
 /// near, or where whether there is a heading matters more than which.
 const ENOUGH: u32 = 16;
-const ENOUGH_POINTS: u32 = 500;
+/// So many points are looked at for all sectors together, less what the memory's points have cost the tick.
+const LOOKS: u32 = 600;
+const JUDGED: u32 = 2;
 const BRIEFLY: u32 = 5;
 
 /// The sector that an angle lies in.

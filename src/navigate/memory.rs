@@ -73,6 +73,10 @@ const BEHIND: usize = 16;
 /// A new point takes the place of one this near to it that is a little behind the echo: it is the same obstacle.
 const SAME: Steps = Steps::lit("0.07");
 
+/// A new point of an echo whose direction is known takes the place of any point this near to it: a lidar sees a little
+/// farther round every obstacle with each tick, and would fill the memory with one of them.
+const APART: Steps = Steps::lit("0.045");
+
 /// Disproofs that a supported point survives, and one.
 const SURE: u8 = 2;
 
@@ -217,9 +221,11 @@ impl Memory {
         }
     }
 
-    /// Forgets what can be seen again or is far: everything but the near points that no sensor looks at.
+    /// Forgets what can be seen again or is far: everything but the near points that no sensor looks at and those that the
+    /// outline nearly touches, whose places an echo alone does not tell so well.
     pub fn forget_doubtful<const N: usize>(&mut self, eyes: &Eyes<N>, outline: &Outline) {
         const NEAR: Steps = Steps::lit("1");
+        const NEARLY: Steps = Steps::lit("0.04");
         let (body, forward) = (self.body, self.forward);
         let near = (outline.reach + NEAR).squared();
         retain(&mut self.records, |record| {
@@ -228,8 +234,9 @@ impl Memory {
                 return false;
             }
             let place = away.in_frame(forward);
-            eyes.seeing(place, &mut record.sensor(), |_, _, _, _| false)
-                && outline.clearance_at_least(place) < NEAR
+            let room = outline.clearance_at_least(place);
+            room < NEARLY
+                || (room < NEAR && eyes.seeing(place, &mut record.sensor(), |_, _, _, _| false))
         });
     }
 
@@ -313,21 +320,22 @@ impl Memory {
         let (at, body, forward) = (eye.at, self.body, self.forward);
         let place = |turn: Bearing| body + (at + turn.ahead(range).turned(axis)).turned(forward);
         let middle = place(Bearing::AHEAD);
+        let exact = matches!(echo, Echo::At(..));
         if count != 2 {
-            self.insert(middle, index);
+            self.insert(middle, index, exact);
         }
         if count >= 2 {
-            self.insert(place(eye.flank), index);
-            self.insert(place(eye.flank.mirrored()), index);
+            self.insert(place(eye.flank), index, exact);
+            self.insert(place(eye.flank.mirrored()), index, exact);
         }
         if count > 3 {
-            self.insert(place(eye.inner), index);
-            self.insert(place(eye.inner.mirrored()), index);
+            self.insert(place(eye.inner), index, exact);
+            self.insert(place(eye.inner.mirrored()), index, exact);
         }
         Some(self.to_world(middle))
     }
 
-    fn insert(&mut self, place: Vector, eye: u8) {
+    fn insert(&mut self, place: Vector, eye: u8, exact: bool) {
         let seen = (self.tick >> UNIT) as u8;
         let Some(record) = Record::new(place, seen, eye) else {
             return;
@@ -341,7 +349,11 @@ impl Memory {
                 return;
             }
         }
-        if self.records.push(record).is_err() {
+        let close =
+            |known: &&mut Record| (known.at() - place).norm_squared() < const { APART.squared() };
+        if exact && let Some(known) = self.records.iter_mut().find(close) {
+            *known = record;
+        } else if self.records.push(record).is_err() {
             self.replace(record);
         }
     }
@@ -413,4 +425,44 @@ impl Record {
 fn narrow(place: Vector) -> Option<[i16; 2]> {
     let narrow = |steps: Steps| i16::try_from(steps.bits()).ok();
     Some([narrow(place.x)?, narrow(place.y)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::presets;
+    use super::{Echoes, Memory};
+    use crate::geometry::Pose;
+    use crate::ports::{Range, RangeReading};
+    use crate::units::{Metres, MetresPerSecond};
+
+    #[test]
+    fn what_is_nearly_touched_is_not_forgotten() {
+        let setup = presets::jackal::<16>().setup().unwrap();
+        let kept = |ranges: [&str; 2]| {
+            let mut readings = [RangeReading::fresh(Range::Clear); 16];
+            for (reading, range) in readings[7..].iter_mut().zip(ranges) {
+                *reading = RangeReading::fresh(Range::Echo(Metres::lit(range)));
+            }
+            let mut echoes = Echoes::<16>::new();
+            echoes.take(&setup.eyes, &readings, MetresPerSecond::ZERO);
+            let mut memory = Memory::new();
+            let params = &setup.params.memory;
+            memory.update(
+                params,
+                &setup.outline,
+                &setup.eyes,
+                &echoes,
+                Pose::default(),
+                MetresPerSecond::ZERO,
+                |_| (),
+            );
+            let known = memory.len();
+            memory.forget_doubtful(&setup.eyes, &setup.outline);
+            (known, memory.len())
+        };
+        // The outline's front is 0.254 m ahead of the sensors.
+        assert_eq!(kept(["0.28", "0.8"]), (2, 1));
+        assert_eq!(kept(["0.28", "0.28"]), (2, 2));
+        assert_eq!(kept(["0.8", "0.8"]), (2, 0));
+    }
 }

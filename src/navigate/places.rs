@@ -14,7 +14,7 @@ pub(super) const SPACING: Metres = Metres::lit("0.25");
 pub(super) const PLACES: usize = 16;
 
 /// The most that are worked out in a tick.
-const NEW: usize = 4;
+const NEW: usize = 2;
 
 /// The places ahead of a cursor.
 #[derive(Clone, Debug)]
@@ -132,7 +132,7 @@ mod tests {
                 at_end || (0..SPACING.bits()).contains(&first.bits()),
                 "{tick}: {first:?}"
             );
-            if tick > 2 {
+            if tick > 4 {
                 let last = list[list.len() - 1].x - driven;
                 let to_end = Metres::lit("6") - driven;
                 assert!(

@@ -373,6 +373,11 @@ impl<const N: usize> Echoes<N> {
         &self.echoes
     }
 
+    /// Those of the sensors that there are: there may be fewer than `N`.
+    pub(super) fn of(&self, eyes: &Eyes<N>) -> &[Echo] {
+        self.echoes.get(..eyes.eyes.len()).unwrap_or(&self.echoes)
+    }
+
     /// Takes over the readings of single sensors, in the order of their mounts; what is missing is silent. A reading
     /// that is `age` old is taken nearer by `speed · age`, the worst that the robot's own motion can have done.
     pub fn take(&mut self, eyes: &Eyes<N>, readings: &[RangeReading], speed: MetresPerSecond) {
