@@ -239,17 +239,20 @@ fn a_short_look_slows_the_next_period_as_a_long_one() {
         prop::collection::vec((-1.5..1.5f64, -1.0..1.0f64), 12),
         // Driven and wanted speeds, and one curvature: two that nearly agree count as one, the more so the shorter the look.
         (0.0..1.2f64, 0.0..2.0f64, -2.0..2.0f64),
+        any::<bool>(),
     );
     let mut runner = TestRunner::deterministic();
     let (mut slowed, mut shorter) = (0, 0);
     for _ in 0..4000 {
-        let (points, (driven, wanted, curvature)) = tries.new_tree(&mut runner).unwrap().current();
+        let (points, (driven, wanted, curvature), backward) =
+            tries.new_tree(&mut runner).unwrap().current();
         let mut near = Near::new();
         let points = points.iter().filter(|(x, y)| clearance([*x, *y]) > 0.0);
         let places = points
             .map(|(x, y)| Vector::of(Point::new(Metres::new(number(*x)), Metres::new(number(*y)))));
         near.collect(places, &outline);
-        let [driven, wanted] = [driven, wanted].map(|v| twist([v, v * curvature]));
+        let way = if backward { -1.0 } else { 1.0 };
+        let [driven, wanted] = [driven, wanted].map(|v| twist([way * v, way * v * curvature]));
         let look = |brakes| slow(&params, &near, &outline, room, brakes, driven, wanted);
         let ((short, few), (long, many)) = (look(brakes()), look(tireless));
         let next = |slowed| brakes().toward(driven, slowed);
@@ -258,4 +261,26 @@ fn a_short_look_slows_the_next_period_as_a_long_one() {
         shorter += u32::from(few < many);
     }
     assert!(slowed > 400 && shorter > 400, "{slowed}, {shorter}");
+}
+
+#[test]
+fn backward_a_margin_of_its_own_counts() {
+    let outline = outline();
+    let room = (Angle::ZERO, Angle::ZERO);
+    let speed = |way: f64, behind: f64| {
+        let params = BarrierParams {
+            behind: Metres::new(number(behind)),
+            ..barrier()
+        };
+        let ahead = Metres::new(number(way * (HALF[0] + 0.1)));
+        let mut near = Near::new();
+        let place = Vector::of(Point::new(ahead, Metres::ZERO));
+        near.collect(std::iter::once(place), &outline);
+        let wanted = twist([way * 0.3, 0.0]);
+        let (slowed, _) = slow(&params, &near, &outline, room, brakes(), wanted, wanted);
+        plain(slowed)[0].abs()
+    };
+    assert_eq!(speed(1.0, 0.02), speed(1.0, 0.08));
+    assert_eq!(speed(-1.0, 0.02), speed(1.0, 0.02));
+    assert!(speed(-1.0, 0.02) > 0.2 && speed(-1.0, 0.08) < 0.05);
 }

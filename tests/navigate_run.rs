@@ -512,6 +512,15 @@ fn settings_that_cannot_be_driven_with_are_named() {
         refused(|p| p.barrier.braking = I16F16::lit("3")),
         "barrier.braking"
     );
+    assert_eq!(
+        refused(|p| p.barrier.margin = metres(-0.01)),
+        "barrier.margin"
+    );
+    assert_eq!(
+        refused(|p| p.barrier.behind = metres(0.6)),
+        "barrier.behind"
+    );
+    assert_eq!(refused(|p| p.barrier.gate = metres(-0.01)), "barrier.gate");
     let far = RangeSet::sectors(
         point([3.0, 0.0]),
         Angle::QUARTER,

@@ -148,8 +148,9 @@ pub fn choose(
 /// When so many sectors were looked along, the best one so far has to do: that bounds a tick. Fewer where many points are
 /// near, or where whether there is a heading matters more than which.
 const ENOUGH: u32 = 16;
-/// So many points are looked at for all sectors together, less what the memory's points have cost the tick.
+/// About so many looks at points are left to all sectors together…
 const LOOKS: u32 = 600;
+/// …less so many for every point that the memory has judged.
 const JUDGED: u32 = 2;
 const BRIEFLY: u32 = 5;
 

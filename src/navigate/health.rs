@@ -54,7 +54,7 @@ impl<const N: usize> Health<N> {
     }
 
     /// Takes over a tick's echoes. Neighbours are those next in the order of the mounts; the first and the last sensor have
-    /// one only and are never doubted.
+    /// one only: they are doubted until they are first heard.
     pub(super) fn update(&mut self, params: &HealthParams, echoes: &[Echo]) {
         let near = Steps::of(params.near);
         let half = near.half();

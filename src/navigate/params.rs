@@ -169,11 +169,16 @@ impl<const N: usize> NavigatorParams<N> {
         )?;
         positive(self.health.doubts > 0, "health.doubts")?;
         positive(self.health.speed > MetresPerSecond::ZERO, "health.speed")?;
-        range(
-            self.barrier.gate >= Metres::ZERO,
-            "barrier.gate",
-            "0 or more",
-        )
+        let margins = [
+            (self.barrier.margin, "barrier.margin"),
+            (self.barrier.behind, "barrier.behind"),
+            (self.barrier.gate, "barrier.gate"),
+        ];
+        for (margin, field) in margins {
+            let most = const { Metres::lit("0.5") };
+            range((Metres::ZERO..=most).contains(&margin), field, "0 to 0.5 m")?;
+        }
+        Ok(())
     }
 }
 

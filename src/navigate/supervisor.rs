@@ -39,7 +39,7 @@ pub enum Manoeuvre {
 /// Thresholds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SupervisorParams {
-    /// Length of path that must be free to follow it, at rest…
+    /// Length of path that must be free to follow it (in the first ticks of a path, as far as it is known), at rest…
     pub enter: Metres,
     /// …and this long a way more.
     pub enter_time: Seconds,
@@ -66,7 +66,7 @@ pub struct SupervisorParams {
     pub pause: u16,
     /// That often at one place, and the robot is blocked for good.
     pub strikes: u8,
-    /// Who comes no nearer to the goal by `progress` for this many ticks is blocked for good.
+    /// Who comes no nearer to the goal by `progress` for this many ticks, pauses not counted, is blocked for good.
     pub give_up: u16,
     /// The goal is reached within this distance.
     pub arrival: Metres,

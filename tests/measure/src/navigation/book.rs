@@ -28,7 +28,8 @@ const HEAD: &str = "\
 # A core's table: what a tick may cost, instructions as QEMU executes them and bytes. `median` and `worst` are over all
 # ticks of all runs, `contrived` over runs invented to be expensive. `cargo navigation` fails where more is needed, or
 # where a budget is slack by more than a fifth of itself; `--write` sets such a budget anew, 5 % above what was measured:
-# say in the commit why. A `goal` is what we want, median and worst; it is only shown.
+# say in the commit why. A `goal` is what we want, median and worst; it is only shown. The M4F's whole tick has its goals as
+# budgets, by hand: `--write` must not raise them.
 ";
 
 /// Budget of instructions.
