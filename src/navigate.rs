@@ -38,6 +38,7 @@ mod steer;
 mod steps;
 mod supervisor;
 mod trajectory;
+mod way_back;
 
 pub use barrier::{BarrierParams, Guarded, gate, slow};
 pub use doubt::DoubtParams;
@@ -110,7 +111,10 @@ pub struct Navigator<const N: usize> {
     places: places::Places,
     bends: Bends,
     supervisor: supervisor::State,
+    /// What the barrier looks along.
+    way: Trajectory,
     escape: escape::Escape,
+    way_back: way_back::WayBack,
     /// The last command, and the one before.
     last: Twist,
     before: Twist,
@@ -151,7 +155,9 @@ impl<const N: usize> Navigator<N> {
             places: places::Places::new(),
             bends: Bends::new(),
             supervisor: supervisor::State::new(),
+            way: Trajectory::new(),
             escape: escape::Escape::new(),
+            way_back: way_back::WayBack::new(),
             last: Twist::REST,
             before: Twist::REST,
             chosen: Angle::ZERO,
@@ -225,6 +231,7 @@ impl<const N: usize> Navigator<N> {
             }
         }
         probe.mark(Stage::Remember);
+        self.way_back.follow(pose, self.last.linear);
         // What is decided now acts after the latency; until then the last command does.
         let moved = Motion::of(setup.brakes.mean(self.before, self.last), p.latency);
         let ahead = moved.from(pose);
@@ -432,6 +439,7 @@ impl<const N: usize> Navigator<N> {
                     &self.map,
                     &p.barrier,
                     course.direction,
+                    || self.way_back.retreat(ahead),
                 )
             }
             (Manoeuvre::Blocked | Manoeuvre::Arrived, ..) => Twist::REST,
@@ -446,7 +454,7 @@ impl<const N: usize> Navigator<N> {
     }
 
     /// Barrier and gate.
-    fn guard(&self, setup: &Setup<N>, wanted: Twist) -> Guarded {
+    fn guard(&mut self, setup: &Setup<N>, wanted: Twist) -> Guarded {
         let p = &setup.params;
         let outline = &setup.outline;
         let room = (self.map.left, self.map.right);
@@ -471,6 +479,7 @@ impl<const N: usize> Navigator<N> {
                 .limit(RadiansPerSecond::new(p.limits.yaw_rate)),
         };
         let (slowed, looked) = slow(
+            &mut self.way,
             &p.barrier,
             &self.near,
             &setup.outline,
@@ -487,6 +496,7 @@ impl<const N: usize> Navigator<N> {
         };
         let stepped = gentle.toward(self.last, slowed);
         let guarded = gate(
+            &mut self.way,
             &p.barrier,
             &self.near,
             &setup.outline,

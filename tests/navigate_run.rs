@@ -158,6 +158,17 @@ impl<const N: usize> Robot<N> {
         touched
     }
 
+    /// One period; whether something was touched.
+    fn tick(&mut self, discs: &[Disc], task: Task<'_>) -> (NavigationRecord, bool) {
+        self.see(discs);
+        let [x, y, heading] = self.pose;
+        let pose = Pose::new(point([x, y]), angle(heading));
+        let record = self.navigator.step(&self.setup, pose, task);
+        let twist = [record.twist.linear.bits(), record.twist.angular.bits()];
+        let touched = self.go(twist.map(|bits| f64::from(bits) / 65_536.0), discs);
+        (record, touched)
+    }
+
     fn drive(&mut self, discs: &[Disc], task: Task<'_>, seconds: f64) -> Run {
         let mut run = Run {
             last: Manoeuvre::Avoid,
@@ -170,15 +181,12 @@ impl<const N: usize> Robot<N> {
         let (mut anchor, mut since) = (self.pose, 0.0);
         let mut standing = 0;
         while run.seconds < seconds && !run.touched && standing < 100 {
-            self.see(discs);
-            let [x, y, heading] = self.pose;
-            let pose = Pose::new(point([x, y]), angle(heading));
-            let record = self.navigator.step(&self.setup, pose, task);
+            let (record, touched) = self.tick(discs, task);
             let bits = [record.twist.linear.bits(), record.twist.angular.bits()];
             for byte in bits.iter().flat_map(|bits| bits.to_le_bytes()) {
                 run.digest = (run.digest ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
             }
-            run.touched = self.go(bits.map(|bits| f64::from(bits) / 65_536.0), discs);
+            run.touched = touched;
             run.seconds += PERIOD;
             run.last = record.manoeuvre;
             let stands = matches!(run.last, Manoeuvre::Blocked | Manoeuvre::Arrived);
@@ -261,6 +269,43 @@ fn a_trap_is_left() {
         matches!(run.last, Manoeuvre::Arrived | Manoeuvre::Blocked),
         "{run:?}"
     );
+}
+
+/// A bent passage that ends: too narrow to turn in it, and backward nothing is seen.
+#[test]
+fn a_dead_end_is_left_the_way_that_it_came() {
+    let bend = |radius: f64| {
+        let arc = (0..=8).map(move |i| {
+            let (sin, cos) = (f64::from(i) * 0.15).sin_cos();
+            [0.3 + radius * sin, 1.5 - radius * cos]
+        });
+        std::iter::once([-0.3, 1.5 - radius])
+            .chain(arc)
+            .collect::<Vec<_>>()
+    };
+    let (outer, inner) = (bend(1.9), bend(1.1));
+    let end = [outer[outer.len() - 1], inner[inner.len() - 1]];
+    let passage = [walls(&outer), walls(&inner), walls(&end)].concat();
+    let mut robot = Robot::new(presets::jackal::<16>(), [-0.3, 0.0, 0.0]);
+    let task = Task::Goal(point([3.0, 3.5]));
+    let (mut way, mut backed, mut farthest) = (Vec::new(), 0.0f64, 0.0f64);
+    for _ in 0..600 {
+        let (record, touched) = robot.tick(&passage, task);
+        assert!(!touched);
+        let at = [robot.pose[0], robot.pose[1]];
+        let from = |place: &[f64; 2]| (place[0] - at[0]).hypot(place[1] - at[1]);
+        if record.manoeuvre == Manoeuvre::Escape && robot.twist[0] < 0.0 {
+            backed += -robot.twist[0] * PERIOD;
+            let off = way.iter().map(from).fold(f64::INFINITY, f64::min);
+            farthest = farthest.max(off);
+        } else if backed > 0.0 {
+            break;
+        } else {
+            way.push(at);
+        }
+    }
+    assert!(backed > 0.25, "{backed}");
+    assert!(farthest < 0.02, "{farthest}");
 }
 
 #[test]
@@ -520,7 +565,30 @@ fn settings_that_cannot_be_driven_with_are_named() {
         refused(|p| p.barrier.behind = metres(0.6)),
         "barrier.behind"
     );
-    assert_eq!(refused(|p| p.barrier.gate = metres(-0.01)), "barrier.gate");
+    assert_eq!(refused(|p| p.barrier.gate = metres(0.009)), "barrier.gate");
+    // What the barrier's promise needs.
+    assert_eq!(refused(|p| p.period = Seconds::lit("0.11")), "period");
+    assert_eq!(refused(|p| p.latency = Seconds::lit("0.11")), "latency");
+    assert_eq!(
+        refused(|p| p.limits.speed = MetresPerSecond::lit("3.1")),
+        "limits.speed"
+    );
+    assert_eq!(
+        refused(|p| p.limits.acceleration = I16F16::lit("0.8")),
+        "limits.acceleration"
+    );
+    assert_eq!(
+        refused(|p| p.limits.yaw_acceleration = I16F16::lit("2.5")),
+        "limits.yaw_acceleration"
+    );
+    let taken = |change: fn(&mut NavigatorParams<16>)| {
+        let mut params = presets::jackal::<16>();
+        change(&mut params);
+        params.setup().is_ok()
+    };
+    assert!(taken(|p| p.limits.speed = MetresPerSecond::lit("2.875")));
+    assert!(taken(|p| p.limits.acceleration = I16F16::lit("0.87")));
+    assert!(taken(|p| p.latency = Seconds::lit("0.1")));
     let far = RangeSet::sectors(
         point([3.0, 0.0]),
         Angle::QUARTER,

@@ -1,4 +1,5 @@
-//! Out of a place where no heading is admissible: the best of six short arcs, three of them backward, or a turn in place.
+//! Out of a place where no heading is admissible: back the way that it came, or the best of six short arcs, three of them
+//! backward, or a turn in place.
 
 use super::barrier::BarrierParams;
 use super::footprint::Outline;
@@ -6,6 +7,7 @@ use super::near::Near;
 use super::polar::PolarMap;
 use super::steps::Steps;
 use super::trajectory::Trajectory;
+use super::way_back::Retreat;
 use crate::signals::Twist;
 use crate::units::{Angle, MetresPerSecond, PerMetre, RadiansPerSecond};
 
@@ -17,6 +19,8 @@ const TURN: RadiansPerSecond = RadiansPerSecond::lit("1");
 const KEPT: u8 = 5;
 /// How far an arc is looked along.
 const LOOK: Steps = Steps::lit("0.35");
+/// What an arc costs beside its looks at points, as looks.
+const ARC: u32 = 15;
 /// An arc that is free for less is none.
 const LEAST: Steps = Steps::lit("0.05");
 
@@ -42,7 +46,7 @@ type Choice = Option<(i32, Twist)>;
 pub(super) struct Escape {
     twist: Twist,
     left: u8,
-    /// Arcs looked along for the next choice.
+    /// What was looked along for the next choice: the way back, then the arcs.
     looked: u8,
     /// The best of them, and of those that go on the way of the last choice.
     best: Choice,
@@ -64,8 +68,9 @@ impl Escape {
         }
     }
 
-    /// The motion to escape by; chosen anew every few ticks. `direction` is the one to get to, body frame. The first choice
-    /// is thought about at rest, others while the last one is driven.
+    /// The motion to escape by; chosen anew every few ticks: the way `back` as far as there is one and it is free, else the
+    /// best arc. `direction` is the one to get to, body frame. The first choice is thought about at rest, others while the
+    /// last one is driven.
     pub fn drive(
         &mut self,
         near: &Near,
@@ -73,6 +78,7 @@ impl Escape {
         map: &PolarMap,
         barrier: &BarrierParams,
         direction: Angle,
+        back: impl FnOnce() -> Option<Retreat>,
     ) -> Twist {
         self.looked_at = 0;
         if let Some(left) = self.left.checked_sub(1) {
@@ -80,11 +86,22 @@ impl Escape {
             return self.twist;
         }
         // One a tick: it costs as much as half a guard.
-        if let Some(bent) = ARCS.get(usize::from(self.looked)) {
+        if self.looked == 0 {
+            self.looked = 1;
+            if let Some(retreat) = back() {
+                let (free, looked_at) = retreat.free(near, outline);
+                self.looked_at = looked_at.wrapping_add(ARC);
+                if free >= LEAST {
+                    self.keep(along(true, retreat.curvature));
+                }
+                return self.twist;
+            }
+        }
+        if let Some(bent) = ARCS.get(usize::from(self.looked).wrapping_sub(1)) {
             self.looked = self.looked.wrapping_add(1);
             let margin = barrier.arc_margin(bent.0);
             let (choice, looked_at) = arc(near, outline, margin, direction, *bent);
-            self.looked_at = looked_at.wrapping_add(15);
+            self.looked_at = looked_at.wrapping_add(ARC);
             let better = |known: Choice| match (known, choice) {
                 (Some((known, _)), Some((worth, _))) => worth > known,
                 (None, Some(_)) => true,
@@ -103,17 +120,21 @@ impl Escape {
                 self.on = choice;
             }
         }
-        if usize::from(self.looked) < ARCS.len() {
-            return self.twist;
+        if usize::from(self.looked) > ARCS.len() {
+            let choice = self.on.or(self.best);
+            self.keep(choice.map_or_else(|| turn(map), |(_, twist)| twist));
         }
-        let choice = self.on.or(self.best);
+        self.twist
+    }
+
+    /// Drives so for some ticks.
+    fn keep(&mut self, twist: Twist) {
         *self = Self {
-            twist: choice.map_or_else(|| turn(map), |(_, twist)| twist),
+            twist,
             left: KEPT,
             looked_at: self.looked_at,
             ..Self::new()
         };
-        self.twist
     }
 
     /// Begins anew.
@@ -142,12 +163,17 @@ fn arc(
     let (cos, _) = (way.end().direction() - direction).cos_sin();
     // 2 to 6 quarters.
     let toward = 4i32.wrapping_add(cos.to_bits() >> 29);
+    let worth = free.bits().wrapping_mul(toward);
+    (Some((worth, along(backward, curvature))), looked_at)
+}
+
+/// The motion along an arc.
+fn along(backward: bool, curvature: PerMetre) -> Twist {
     let linear = if backward { -SPEED } else { SPEED };
-    let twist = Twist {
+    Twist {
         linear,
         angular: linear.on_arc(curvature),
-    };
-    (Some((free.bits().wrapping_mul(toward), twist)), looked_at)
+    }
 }
 
 /// In place, to the side with more room.

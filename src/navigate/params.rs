@@ -26,9 +26,9 @@ pub struct NavigatorParams<const N: usize> {
     pub limits: Limits,
     /// Top speed backward; positive.
     pub reverse: MetresPerSecond,
-    /// Control period.
+    /// Control period, 5 to 100 ms: none drives farther than 0.15 m, and 23 of them stop the robot.
     pub period: Seconds,
-    /// Time from a command to its effect.
+    /// Time from a command to its effect, two periods at most.
     pub latency: Seconds,
     /// Range sensors.
     pub sensors: RangeSet<N>,
@@ -121,15 +121,38 @@ impl<const N: usize> NavigatorParams<N> {
         positive(limits.yaw_acceleration > 0, "limits.yaw_acceleration")?;
         positive(self.reverse > MetresPerSecond::ZERO, "reverse")?;
         range(
-            (const { Seconds::lit("0.005") }..=const { Seconds::lit("0.2") })
+            (const { Seconds::lit("0.005") }..=const { Seconds::lit("0.1") })
                 .contains(&self.period),
             "period",
-            "5 to 200 ms",
+            "5 to 100 ms",
+        )?;
+        // What acts until then is known of two commands.
+        let two = Seconds::from_bits(self.period.bits().wrapping_mul(2));
+        range(
+            (Seconds::ZERO..=two).contains(&self.latency),
+            "latency",
+            "0 to two periods",
+        )?;
+        // In longer steps a corner may pass a point that neither end of one shows.
+        range(
+            limits.speed.over(self.period) <= const { Metres::lit("0.151") },
+            "limits.speed",
+            "up to 0.15 m a period",
+        )?;
+        // Braking is followed to its end only then; a period's part of it is rounded.
+        let stops = |most: i32, rate: I16F16| {
+            let braked = i64::from(per(rate, self.period).bits()).wrapping_mul(BRAKING);
+            i64::from(most) <= braked.saturating_add(BRAKING)
+        };
+        range(
+            stops(limits.speed.bits(), limits.acceleration),
+            "limits.acceleration",
+            "enough to stop from limits.speed in 23 periods",
         )?;
         range(
-            (Seconds::ZERO..=const { Seconds::lit("0.5") }).contains(&self.latency),
-            "latency",
-            "0 to 0.5 s",
+            stops(limits.yaw_rate.to_bits(), limits.yaw_acceleration),
+            "limits.yaw_acceleration",
+            "enough to stop from limits.yaw_rate in 23 periods",
         )?;
         range(
             (const { Metres::lit("0.5") }..=const { Metres::lit("3.5") })
@@ -169,18 +192,35 @@ impl<const N: usize> NavigatorParams<N> {
         )?;
         positive(self.health.doubts > 0, "health.doubts")?;
         positive(self.health.speed > MetresPerSecond::ZERO, "health.speed")?;
+        let most = const { Metres::lit("0.5") };
         let margins = [
             (self.barrier.margin, "barrier.margin"),
             (self.barrier.behind, "barrier.behind"),
-            (self.barrier.gate, "barrier.gate"),
         ];
         for (margin, field) in margins {
-            let most = const { Metres::lit("0.5") };
             range((Metres::ZERO..=most).contains(&margin), field, "0 to 0.5 m")?;
         }
-        Ok(())
+        // With less, rounding decides.
+        range(
+            (const { Metres::lit("0.01") }..=most).contains(&self.barrier.gate),
+            "barrier.gate",
+            "0.01 to 0.5 m",
+        )?;
+        // A turning corner's way is looked at twice a period: half of such a step must not carry it past a point.
+        let turned = RadiansPerSecond::new(limits.yaw_rate)
+            .over(self.period)
+            .radians();
+        let swept = self.footprint.outline().reach.metres().scale(turned);
+        range(
+            swept.bits() >> 2 <= self.barrier.gate.bits(),
+            "barrier.gate",
+            "a quarter of what the outline's farthest place turns in a period, or more",
+        )
     }
 }
+
+/// Periods after which a robot that brakes has come to rest: one less than the barrier looks ahead.
+const BRAKING: i64 = super::trajectory::MAX_STEPS as i64 / 2 - 1;
 
 /// What a rate per second makes in a period.
 pub(super) fn per(rate: I16F16, period: Seconds) -> MetresPerSecond {

@@ -478,7 +478,17 @@ impl Brakes {
             if change == most.saturating_neg() {
                 return to.saturating_add(half);
             }
-            to.saturating_sub(ratio(change, change.saturating_abs() >> 1, most))
+            // Twists that are driven: a division of 32 bits.
+            let size = change.unsigned_abs();
+            let mean = size
+                .checked_mul(size >> 1)
+                .and_then(|product| product.checked_div(u32::try_from(most).ok()?));
+            let part = match mean {
+                Some(part) if change < 0 => (part as i32).wrapping_neg(),
+                Some(part) => part as i32,
+                None => ratio(change, change.saturating_abs() >> 1, most),
+            };
+            to.saturating_sub(part)
         };
         Twist {
             linear: MetresPerSecond::from_bits(mean(

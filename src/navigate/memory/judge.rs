@@ -3,7 +3,7 @@
 use super::{Memory, MemoryParams, Record, SURE, UNIT};
 use crate::integer::proper_fraction;
 use crate::navigate::footprint::Outline;
-use crate::navigate::sensors::{Echoes, Eyes, View};
+use crate::navigate::sensors::{Echo, Echoes, Eyes, View};
 use crate::navigate::steps::{Bearing, Steps, Vector};
 
 /// Deeper than this inside the robot a point is wrong: there the robot stands.
@@ -72,24 +72,20 @@ impl<'a, const N: usize> Judge<'a, N> {
         };
         let [disproof, support, nearer] =
             [params.disproof, params.support, params.nearer].map(Steps::of);
-        let mut bands = [NONE; N];
         let mut heard = 0;
-        let mut bit = 1u32;
-        for (band, echo) in bands.iter_mut().zip(echoes.as_slice()) {
-            let this = bit;
-            bit = bit.wrapping_shl(1);
-            let Some(range) = echo.range() else {
-                continue;
+        let bands = core::array::from_fn(|index| {
+            let Some(range) = echoes.as_slice().get(index).copied().and_then(Echo::range) else {
+                return NONE;
             };
-            heard |= this;
+            heard |= 1u32.wrapping_shl(index as u32);
             let square = |limit: Steps| limit.max(Steps::ZERO).squared();
-            *band = Band {
+            Band {
                 disproved: square(range - disproof),
                 near: square(range - support),
                 far: square(range + support),
                 explained: square(range + nearer),
-            };
-        }
+            }
+        });
         Self {
             outline,
             eyes,
