@@ -170,6 +170,9 @@ pub struct Variants {
     odometry: Option<Odometry>,
 }
 
+/// Highest speed cap that the library's navigator takes, m/s.
+const MOST_SPEED: f64 = 4.0;
+
 const LEAST_RADIUS: f64 = 0.01;
 const MOST_RADIUS: f64 = 1000.0;
 

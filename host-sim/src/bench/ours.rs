@@ -168,7 +168,10 @@ fn path(mission: &Mission) -> Box<StoredPath<PIECES, POINTS>> {
         return path;
     }
     path.begin_points(false);
-    for point in waypoints(&mission.route, POINTS) {
+    let mut points = waypoints(&mission.route, POINTS);
+    // Where a route turns back on itself two may fall together.
+    points.dedup_by_key(|point| point.at);
+    for point in points {
         path.push_point(point).expect("there is room");
     }
     path.commit(false).expect("the route has a length");

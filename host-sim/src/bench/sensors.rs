@@ -16,6 +16,9 @@ const REACH: f64 = 4.0;
 /// Most sensors that `cones:…` may ask for.
 const MOST_CONES: usize = 64;
 
+/// Widest cone that the library's navigator takes, degrees.
+const WIDEST: f64 = 90.0;
+
 /// Sensors by name, or `cones:COUNT:FIELD:WIDTH` with degrees: COUNT cones whose axes divide FIELD evenly.
 pub fn named(name: &str) -> Result<Vec<BeamView>, String> {
     match name {
@@ -28,7 +31,7 @@ pub fn named(name: &str) -> Result<Vec<BeamView>, String> {
     let refused = || {
         let known: Vec<&str> = NAMED.iter().map(|(name, _)| *name).collect();
         format!(
-            "unknown sensors `{name}`; allowed: {}, or cones:COUNT:FIELD:WIDTH (3 to {MOST_CONES} cones, a field up to 360°, 0 to 170° wide)",
+            "unknown sensors `{name}`; allowed: {}, or cones:COUNT:FIELD:WIDTH (3 to {MOST_CONES} cones, a field up to 360°, each 0 to {WIDEST}° wide)",
             known.join(", ")
         )
     };
@@ -42,7 +45,7 @@ pub fn named(name: &str) -> Result<Vec<BeamView>, String> {
     let fits = (3..=MOST_CONES).contains(&count)
         && field > 0.0
         && field <= 360.0
-        && (0.0..=170.0).contains(&width);
+        && (0.0..=WIDEST).contains(&width);
     if fits {
         Ok(fan(count, field, width))
     } else {

@@ -5,7 +5,8 @@ mod report;
 pub mod table;
 
 use super::{
-    BadInput, check_folder_of, none_of_what_is_read, not_what_is_read, of_worlds, print, put, whole,
+    BadInput, MOST_SPEED, check_folder_of, none_of_what_is_read, not_what_is_read, of_worlds,
+    print, put, whole,
 };
 use clap::Args;
 pub use conditions::Task;
@@ -47,7 +48,7 @@ pub struct BenchArguments {
     #[arg(long, default_value = "jackal", value_name = "SHAPE")]
     body: String,
     /// Speed cap, m/s.
-    #[arg(long, default_value_t = 1.0, value_parser = super::number(0.05, 5.0), allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1.0, value_parser = super::number(0.05, MOST_SPEED), allow_hyphen_values = true)]
     speed: f64,
     /// Names of navigators between commas, or all.
     #[arg(long, default_value = "all", value_name = "LIST")]

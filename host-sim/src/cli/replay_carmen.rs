@@ -1,6 +1,6 @@
 //! `host-sim replay-carmen`
 
-use super::{BadInput, check_folder, none_of_what_is_read, number, print, put};
+use super::{BadInput, MOST_SPEED, check_folder, none_of_what_is_read, number, print, put};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
@@ -29,7 +29,7 @@ pub struct CarmenArguments {
     #[arg(long, default_value = "jackal", value_name = "SHAPE")]
     body: String,
     /// Speed cap of the navigator, m/s.
-    #[arg(long, default_value_t = 1.0, value_parser = number(0.05, 4.0), allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1.0, value_parser = number(0.05, MOST_SPEED), allow_hyphen_values = true)]
     speed: f64,
     /// Speed that the recorded robot is taken to have driven with if the log has no usable times, m/s.
     #[arg(long, default_value_t = 0.5, value_parser = number(0.05, 5.0), allow_hyphen_values = true)]

@@ -4,8 +4,8 @@ use super::bench::Task;
 use super::run::json;
 use super::search::{INTERRUPTED, STATE, bad, bar, listen, remember, show};
 use super::{
-    BadInput, Interrupted, check_folder, none_of_what_is_read, number, of_worlds, print, put_all,
-    whole,
+    BadInput, Interrupted, MOST_SPEED, check_folder, none_of_what_is_read, number, of_worlds,
+    print, put_all, whole,
 };
 use anyhow::Context;
 use clap::Args;
@@ -53,7 +53,7 @@ pub struct TuneArguments {
     #[arg(long, value_name = "NAME", default_value = "cone16")]
     sensors: String,
     /// Speed caps, m/s.
-    #[arg(long, value_name = "M/S,…", value_delimiter = ',', default_values_t = [1.0], value_parser = number(0.05, 5.0), allow_hyphen_values = true)]
+    #[arg(long, value_name = "M/S,…", value_delimiter = ',', default_values_t = [1.0], value_parser = number(0.05, MOST_SPEED), allow_hyphen_values = true)]
     speed: Vec<f64>,
     /// Seeds 0 to N-1 of every world.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, 1000), allow_hyphen_values = true)]

@@ -7,5 +7,6 @@ mod figures;
 mod generated;
 mod promises;
 mod ranges;
+mod refused;
 mod runs;
 mod world_files;

@@ -2,13 +2,16 @@
 
 use super::error::WorldError;
 use super::planner;
-use crate::bench::arena::Arena;
+use crate::bench::arena::{Arena, length};
 use crate::bench::attempt::body_clearance;
 use crate::bench::body::Body;
 use rayon::prelude::*;
 
-/// Refuses worlds whose start or goal lies in an obstacle, and those without a way for a disc that fits into the body:
-/// what that one cannot pass, the body cannot. Sealed worlds must not have one.
+/// Shortest route, m. Of one without a length there is nothing to follow.
+pub const SHORTEST: f64 = 0.1;
+
+/// Refuses worlds whose start or goal lies in an obstacle or is one with the other, and those without a way for a disc
+/// that fits into the body: what that one cannot pass, the body cannot. Sealed worlds must not have one.
 pub fn check(place: &str, arenas: &[Arena], body: &Body) -> Result<(), WorldError> {
     arenas.par_iter().try_for_each(|arena| {
         fault(arena, body).map_or(Ok(()), |why| {
@@ -24,6 +27,18 @@ pub fn check(place: &str, arenas: &[Arena], body: &Body) -> Result<(), WorldErro
 fn fault(arena: &Arena, body: &Body) -> Option<String> {
     let [gx, gy] = arena.goal;
     let [sx, sy, _] = arena.start;
+    if length(&[[sx, sy], [gx, gy]]) <= arena.goal_radius {
+        return Some(format!(
+            "the start ({sx}, {sy}) is within {} m of the goal ({gx}, {gy}): the robot is there before it drives; allowed: a goal farther away",
+            arena.goal_radius
+        ));
+    }
+    if arena.route_length() < SHORTEST {
+        return Some(format!(
+            "the route from ({sx}, {sy}) to ({gx}, {gy}) is {:.3} m long; allowed: {SHORTEST} m or more",
+            arena.route_length()
+        ));
+    }
     let moving: Vec<_> = arena.movers.iter().map(|m| m.at(0.0)).collect();
     if body_clearance(body, arena.start, &arena.circles) <= 0.0
         || body_clearance(body, arena.start, &moving) <= 0.0

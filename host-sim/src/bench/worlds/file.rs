@@ -11,12 +11,16 @@
 //! mover = [{ from = [-1.0, 2.0], to = [1.0, 2.0], speed = 0.4, radius = 0.2 }]
 //! ```
 
+use super::check::SHORTEST;
 use super::error::WorldError;
 use super::wall;
-use crate::bench::arena::{Arena, Circle, Mover};
+use crate::bench::arena::{Arena, Circle, Mover, length};
 use serde::Deserialize;
 use std::path::Path;
 use toml::Spanned;
+
+/// How far from start and goal a route may begin and end, m.
+const NEAR: f64 = 1.0;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -27,8 +31,7 @@ struct Raw {
     goal_radius: Spanned<f64>,
     #[serde(default)]
     sealed: bool,
-    #[serde(default)]
-    route: Vec<Spanned<[f64; 2]>>,
+    route: Option<Spanned<Vec<Spanned<[f64; 2]>>>>,
     #[serde(default)]
     circle: Vec<Spanned<RawCircle>>,
     #[serde(default)]
@@ -112,6 +115,37 @@ impl Source<'_> {
             Err(self.wrong(at, &x.to_string(), &allowed))
         }
     }
+
+    /// The points of a route that leads from one end to the other.
+    fn route(
+        &self,
+        route: &Spanned<Vec<Spanned<[f64; 2]>>>,
+        [start, goal]: [[f64; 2]; 2],
+    ) -> Result<Vec<[f64; 2]>, WorldError> {
+        for point in route.get_ref() {
+            self.numbers(point.span().start, point.get_ref())?;
+        }
+        let points: Vec<[f64; 2]> = route.get_ref().iter().map(|p| *p.get_ref()).collect();
+        let found = match points[..] {
+            [] => "a route without points".to_owned(),
+            [_] => "a route of one point".to_owned(),
+            _ if length(&points) < SHORTEST => "a route whose points are one place".to_owned(),
+            [first, .., last] => {
+                let off = |from, to| Some(length(&[from, to])).filter(|off| *off > NEAR);
+                if let Some(off) = off(start, first) {
+                    format!("a route that begins {off:.2} m from the start")
+                } else if let Some(off) = off(last, goal) {
+                    format!("a route that ends {off:.2} m from the goal")
+                } else {
+                    return Ok(points);
+                }
+            }
+        };
+        let allowed = format!(
+            "two points or more, from within {NEAR} m of the start to within {NEAR} m of the goal, or no `route`: then it is planned"
+        );
+        Err(self.wrong(route.span().start, &found, &allowed))
+    }
 }
 
 impl Raw {
@@ -152,10 +186,11 @@ impl Raw {
                 radius: m.radius,
             });
         }
-        for point in &self.route {
-            source.numbers(point.span().start, point.get_ref())?;
-        }
         let [x, y, degrees] = self.start.into_inner();
+        let route = match &self.route {
+            None => Vec::new(),
+            Some(route) => source.route(route, [[x, y], *self.goal.get_ref()])?,
+        };
         Ok(Arena {
             number: 0,
             circles,
@@ -164,7 +199,7 @@ impl Raw {
             goal: self.goal.into_inner(),
             goal_radius: self.goal_radius.into_inner(),
             sealed: self.sealed,
-            route: self.route.into_iter().map(Spanned::into_inner).collect(),
+            route,
             course: None,
         })
     }

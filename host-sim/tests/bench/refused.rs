@@ -1,0 +1,122 @@
+//! What `host-sim bench`, `tune` and `merge` refuse before anything is driven, and what they say then.
+
+use crate::command::sim;
+use std::fs;
+use std::path::Path;
+use tempfile::tempdir;
+
+/// The message of a command line that is refused: exit code 2, nothing on standard output.
+fn refused(dir: &Path, arguments: &[&str]) -> String {
+    let output = sim(dir).args(arguments).assert().code(2);
+    let output = output.get_output();
+    assert!(output.stdout.is_empty(), "{arguments:?} printed something");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The same, and that it is one line that holds all of some parts.
+fn refused_with(dir: &Path, arguments: &[&str], parts: &[&str]) {
+    let message = refused(dir, arguments);
+    assert_eq!(message.trim_end().lines().count(), 1, "{message}");
+    for part in parts {
+        assert!(message.contains(part), "{part} is not in: {message}");
+    }
+}
+
+/// A short campaign of the library's navigator.
+fn ours(worlds: &str) -> Vec<&str> {
+    let mut arguments = vec!["bench", "--worlds", worlds, "--numbers", "0,1"];
+    arguments.extend(["--controllers", "ours", "--time-limit", "1"]);
+    arguments
+}
+
+#[test]
+fn the_limits_that_are_stated_are_those_that_can_be_driven() {
+    let dir = tempdir().unwrap();
+    let barn = ours("generated:barn");
+    for edge in [
+        ["--speed", "4"],
+        ["--speed", "0.05"],
+        ["--sensors", "cones:16:270:90"],
+        ["--sensors", "cones:64:360:90"],
+        ["--sensors", "cones:3:1:0"],
+        ["--body", "disc:0.01"],
+    ] {
+        sim(dir.path()).args(&barn).args(edge).assert().success();
+    }
+    for command in [barn, vec!["tune"]] {
+        for speed in ["4.5", "5"] {
+            let message = refused(dir.path(), &[&command[..], &["--speed", speed]].concat());
+            assert!(message.contains("0.05 to 4"), "{message}");
+        }
+        for sensors in ["cones:16:270:91", "cones:9:200:120"] {
+            let arguments = [&command[..], &["--sensors", sensors]].concat();
+            refused_with(dir.path(), &arguments, &["--sensors", "0 to 90°"]);
+        }
+    }
+}
+
+#[test]
+fn a_world_without_a_way_to_drive_is_refused() {
+    let dir = tempdir().unwrap();
+    let route = "two points or more, from within 1 m of the start to within 1 m of the goal";
+    let cases = [
+        (
+            "goal = [0, 0]",
+            "w.toml: world 0: the start (0, 0) is within 1 m of the goal",
+        ),
+        (
+            "goal = [0.05, 0]\ngoal-radius = 0.01",
+            "is 0.050 m long; allowed: 0.1 m or more",
+        ),
+        (
+            "goal = [5, 0]\nroute = [[0, 0], [0, 0]]",
+            "w.toml:3: found a route whose points are one place",
+        ),
+        (
+            "goal = [5, 0]\nroute = []",
+            "w.toml:3: found a route without points",
+        ),
+        (
+            "goal = [5, 0]\nroute = [[0, 0]]",
+            "w.toml:3: found a route of one point",
+        ),
+        (
+            "goal = [5, 0]\nroute = [[5, 5], [6, 6]]",
+            "w.toml:3: found a route that begins 7.07 m from the start",
+        ),
+        (
+            "goal = [5, 0]\nroute = [[0, 0], [3, 0]]",
+            "w.toml:3: found a route that ends 2.00 m from the goal",
+        ),
+    ];
+    for (text, part) in cases {
+        fs::write(
+            dir.path().join("w.toml"),
+            format!("start = [0, 0, 0]\n{text}\n"),
+        )
+        .unwrap();
+        let allowed = if text.contains("route") {
+            route
+        } else {
+            "allowed"
+        };
+        for task in ["path", "goal"] {
+            let arguments = [&ours("w.toml")[..], &["--task", task]].concat();
+            refused_with(dir.path(), &arguments, &[part, allowed]);
+        }
+    }
+}
+
+/// Its points are so far apart that two of them fall together where it turns back.
+#[test]
+fn a_route_that_turns_back_on_itself_is_driven() {
+    let dir = tempdir().unwrap();
+    let text = "start = [0, 0, 0]\ngoal = [2.0895522388, 0]\n\
+                route = [[0, 0], [6.0447761194, 0], [2.0895522388, 0]]\n";
+    fs::write(dir.path().join("back.toml"), text).unwrap();
+    sim(dir.path())
+        .args(ours("back.toml"))
+        .args(["--task", "path"])
+        .assert()
+        .success();
+}
