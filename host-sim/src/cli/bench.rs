@@ -6,7 +6,7 @@ pub mod table;
 
 use super::{
     BadInput, MOST_SPEED, check_folder_of, none_of_what_is_read, not_what_is_read, of_worlds,
-    print, put, whole,
+    print, put, ready_file, ready_folder, whole,
 };
 use clap::Args;
 pub use conditions::Task;
@@ -95,9 +95,6 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         None => None,
         Some(text) => Some(Shard::parse(text).map_err(|e| named("--shard", text, e))?),
     };
-    if let Some(folder) = &arguments.report {
-        check_folder_of("--report", folder)?;
-    }
     nothing_lost(arguments)?;
     let arenas = arenas(arguments, &numbers, &body)?;
     let arenas = match shard {
@@ -114,6 +111,7 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         seeds: (arguments.first_seed..arguments.first_seed + arguments.seeds).collect(),
         setting,
     };
+    ready(arguments)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0) as usize)
         .build()?;
@@ -131,18 +129,35 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         .sum();
     let spent = begin.elapsed().as_secs_f64() * pool.current_num_threads() as f64;
 
-    if let Some(file) = &arguments.json {
-        put(file, json(&results)?.as_bytes())?;
-    }
-    if let Some(folder) = &arguments.report {
-        let most = arguments.most_replays as usize;
-        report::write(folder, &campaign, &chosen, &results, most)?;
-    }
-    print(table::all(&results))?;
-    print(format_args!(
-        "{simulated:.0} s driven, {:.0} × real time a thread\n",
+    // All of it is tried: what cannot be written takes nothing else along.
+    let printed = print(format_args!(
+        "{}{simulated:.0} s driven, {:.0} × real time a thread\n",
+        table::all(&results),
         simulated / spent
-    ))
+    ));
+    let stored = arguments
+        .json
+        .as_ref()
+        .map_or(Ok(()), |file| put(file, json(&results)?.as_bytes()));
+    let reported = arguments.report.as_ref().map_or(Ok(()), |folder| {
+        let most = arguments.most_replays as usize;
+        report::write(folder, &campaign, &chosen, &results, most)
+    });
+    printed.and(stored).and(reported)
+}
+
+/// Refuses places where nothing can be written.
+fn ready(arguments: &BenchArguments) -> Result<(), BadInput> {
+    if let Some(file) = &arguments.json {
+        ready_file("--json", file)?;
+    }
+    match &arguments.report {
+        Some(folder) => {
+            check_folder_of("--report", &folder.join("runs"))?;
+            ready_folder("--report", folder, &report::FILES)
+        }
+        None => Ok(()),
+    }
 }
 
 /// Refuses results in the place of what is read.

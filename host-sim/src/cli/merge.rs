@@ -1,7 +1,7 @@
 //! `host-sim merge`
 
 use super::bench::table;
-use super::{BadInput, not_what_is_read, print, put};
+use super::{BadInput, not_what_is_read, print, put, ready_file};
 use clap::Args;
 use host_sim::bench::results::Results;
 use host_sim::bench::shard::merge;
@@ -31,9 +31,13 @@ pub fn execute(arguments: &MergeArguments) -> anyhow::Result<()> {
             .map(|part| ("a part", part.as_path()))
             .collect();
         not_what_is_read("--json", file, &parts)?;
-        put(file, super::bench::json(&whole)?.as_bytes())?;
+        ready_file("--json", file)?;
     }
-    print(table::all(&whole))
+    let printed = print(table::all(&whole));
+    let stored = arguments.json.as_ref().map_or(Ok(()), |file| {
+        put(file, super::bench::json(&whole)?.as_bytes())
+    });
+    printed.and(stored)
 }
 
 fn read(file: &Path) -> Result<Vec<Results>, BadInput> {

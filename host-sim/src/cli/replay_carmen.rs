@@ -1,6 +1,8 @@
 //! `host-sim replay-carmen`
 
-use super::{BadInput, MOST_SPEED, check_folder, none_of_what_is_read, number, print, put};
+use super::{
+    BadInput, MOST_SPEED, check_folder, none_of_what_is_read, number, print, put, ready_folder,
+};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
@@ -91,18 +93,19 @@ pub fn execute(arguments: &CarmenArguments) -> anyhow::Result<()> {
         speed: arguments.speed,
         look: arguments.look,
     };
+    ready_folder("--out", &folder, &FILES)?;
     let replayed = replay::replay(&log, &timeline, &settings)
         .map_err(|e| BadInput(format!("{}: {e}", file.display())))?;
     let summary = Summary::of(&name, &log, &timeline, &replayed);
 
     let svg = picture::picture(&replayed, &summary, body.outer_radius())?;
     let table = csv(&replayed)?;
-    std::fs::create_dir_all(&folder)
-        .with_context(|| format!("{}: cannot be created", folder.display()))?;
+    // What cannot be written does not take the figures along.
+    let printed = print(format_args!("{}\n", report(&summary)));
     plot::write_pair(&folder, "decisions", &svg)?;
     put(&folder.join("ticks.csv"), &table)?;
     put(&folder.join("summary.json"), &super::run::json(&summary)?)?;
-    print(format_args!("{}\n", report(&summary)))?;
+    printed?;
     print(format_args!("written: {}\n", folder.display()))
 }
 

@@ -4,10 +4,9 @@ use super::bench::Task;
 use super::run::json;
 use super::search::{INTERRUPTED, STATE, bad, bar, listen, remember, show};
 use super::{
-    BadInput, Interrupted, MOST_SPEED, check_folder, none_of_what_is_read, number, of_worlds,
-    print, put_all, whole,
+    BadInput, Interrupted, MOST_SPEED, none_of_what_is_read, number, of_worlds, print, put_all,
+    ready_folder, whole,
 };
-use anyhow::Context;
 use clap::Args;
 use comfy_table::Cell;
 use host_sim::bench::attempt::Setting;
@@ -23,6 +22,10 @@ use host_sim::search::state::{Question, State};
 use host_sim::search::{Search, SearchError, Settings, Stop};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+
+/// What is written beside the state.
+const MODULE: &str = "tuned.rs";
+const REPORT: &str = "report.json";
 
 #[derive(Args)]
 #[command(after_help = "\
@@ -112,7 +115,7 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         None => Default::default(),
     };
     let out = &arguments.out;
-    check_folder(out)?;
+    ready_folder("--out", out, &[STATE, MODULE, REPORT])?;
     listen()?;
     let before = tuning.judge(&tuning.start).ok_or_else(|| {
         bad(SearchError::Start(
@@ -164,13 +167,13 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
             .collect(),
     };
     let module = rust(&best, &command(arguments), &arguments.sensors);
-    std::fs::create_dir_all(out)
-        .with_context(|| format!("{}: cannot be created", out.display()))?;
+    // What cannot be written takes what is printed along no more than the other way round.
+    let printed = print(report.text());
     put_all(&[
-        (&out.join("tuned.rs"), module.as_bytes()),
-        (&out.join("report.json"), &json(&report)?),
+        (&out.join(MODULE), module.as_bytes()),
+        (&out.join(REPORT), &json(&report)?),
     ])?;
-    print(report.text())?;
+    printed?;
     print(format_args!("written: {}\n", out.display()))?;
     if found.stop == Stop::Interrupted {
         return Err(Interrupted(format!("--resume {} goes on", state.display())).into());
@@ -190,7 +193,7 @@ fn nothing_lost(arguments: &TuneArguments) -> Result<(), BadInput> {
     none_of_what_is_read("--out", &arguments.out, &[STATE], &read)?;
     let state = arguments.resume.iter();
     read.extend(state.map(|file| ("the state", file.as_path())));
-    none_of_what_is_read("--out", &arguments.out, &["tuned.rs", "report.json"], &read)
+    none_of_what_is_read("--out", &arguments.out, &[MODULE, REPORT], &read)
 }
 
 /// Every task at every speed.

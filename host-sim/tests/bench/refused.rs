@@ -3,11 +3,14 @@
 use crate::command::sim;
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 use tempfile::tempdir;
 
 /// The message of a command line that is refused: exit code 2, nothing on standard output.
 fn refused(dir: &Path, arguments: &[&str]) -> String {
-    let output = sim(dir).args(arguments).assert().code(2);
+    // What is not refused must not be waited for.
+    let limit = Duration::from_secs(30);
+    let output = sim(dir).args(arguments).timeout(limit).assert().code(2);
     let output = output.get_output();
     assert!(output.stdout.is_empty(), "{arguments:?} printed something");
     String::from_utf8_lossy(&output.stderr).into_owned()
@@ -119,4 +122,107 @@ fn a_route_that_turns_back_on_itself_is_driven() {
         .args(["--task", "path"])
         .assert()
         .success();
+}
+
+/// Like [`ours`] of two worlds without obstacles to speak of.
+fn blind(more: &[&'static str]) -> Vec<&'static str> {
+    let mut arguments = vec!["bench", "--worlds", "generated:forest", "--numbers", "0,1"];
+    arguments.extend(["--task", "goal", "--controllers", "pure-pursuit"]);
+    arguments.extend(["--time-limit", "1"]);
+    arguments.extend(more);
+    arguments
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_noticed_before_the_runs() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("file"), "").unwrap();
+    fs::create_dir_all(dir.path().join("folder/index.html")).unwrap();
+    fs::create_dir_all(dir.path().join("tuned/report.json")).unwrap();
+    fs::create_dir_all(dir.path().join("held")).unwrap();
+    fs::write(dir.path().join("held/runs"), "").unwrap();
+    // So many runs that they would not end.
+    let endless = ["--seeds", "1000000", "--time-limit", "3600"];
+    let places: [([&str; 2], &str); 5] = [
+        (
+            ["--json", "file/a.json"],
+            "--json file/a.json: cannot be written",
+        ),
+        (
+            ["--json", "folder"],
+            "--json folder: cannot be written (is a directory",
+        ),
+        (["--report", "file"], "file is a file"),
+        (
+            ["--report", "folder"],
+            "--report folder/index.html: cannot be written",
+        ),
+        (["--report", "held"], "held/runs is a file"),
+    ];
+    for (place, part) in places {
+        let arguments = [
+            &["bench", "--worlds", "generated:forest", "--numbers", "0-99"][..],
+            &["--controllers", "pure-pursuit"],
+            &endless,
+            &place,
+        ]
+        .concat();
+        refused_with(dir.path(), &arguments, &[part, "allowed"]);
+    }
+    for (out, part) in [
+        ("file/out", "file is a file"),
+        ("tuned", "--out tuned/report.json: cannot be written"),
+    ] {
+        let tune = [
+            "tune",
+            "--numbers",
+            "1-299/6",
+            "--seeds",
+            "1000",
+            "--out",
+            out,
+        ];
+        refused_with(dir.path(), &tune, &[part, "allowed"]);
+    }
+}
+
+#[test]
+fn folders_are_made_and_what_cannot_be_written_at_the_end_takes_no_table_along() {
+    let dir = tempdir().unwrap();
+    sim(dir.path())
+        .args(blind(&["--json", "a/b/whole.json"]))
+        .assert()
+        .success();
+    assert!(dir.path().join("a/b/whole.json").exists());
+    for (shard, file) in [("0/2", "0.json"), ("1/2", "1.json")] {
+        sim(dir.path())
+            .args(blind(&["--shard", shard, "--json", file]))
+            .assert()
+            .success();
+    }
+    let merge = ["merge", "0.json", "1.json", "--json"];
+    sim(dir.path())
+        .args(merge)
+        .arg("c/d/merged.json")
+        .assert()
+        .success();
+    let read = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
+    assert_eq!(read("c/d/merged.json"), read("a/b/whole.json"));
+    refused_with(
+        dir.path(),
+        &[&merge[..], &["0.json/merged.json"]].concat(),
+        &["--json 0.json/merged.json: cannot be written"],
+    );
+    if cfg!(target_os = "linux") {
+        // A device without room.
+        for arguments in [blind(&[]), merge[..3].to_vec()] {
+            sim(dir.path())
+                .args(arguments)
+                .args(["--json", "/dev/full"])
+                .assert()
+                .code(1)
+                .stdout(predicates::str::contains("pure-pursuit"))
+                .stderr(predicates::str::contains("/dev/full: cannot be written"));
+        }
+    }
 }
