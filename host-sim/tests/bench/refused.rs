@@ -1,6 +1,7 @@
 //! What `host-sim bench`, `tune` and `merge` refuse before anything is driven, and what they say then.
 
 use crate::command::sim;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -225,4 +226,85 @@ fn folders_are_made_and_what_cannot_be_written_at_the_end_takes_no_table_along()
                 .stderr(predicates::str::contains("/dev/full: cannot be written"));
         }
     }
+}
+
+#[test]
+fn a_part_that_is_not_as_it_was_written_is_refused() {
+    let dir = tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(dir.path().join(name), text).unwrap();
+    for (shard, file) in [("0/2", "0.json"), ("1/2", "1.json")] {
+        let more = ["--shard", shard, "--json", file, "--seeds", "2"];
+        sim(dir.path())
+            .args(blind(&[]))
+            .args(more)
+            .assert()
+            .success();
+    }
+    let part: Value =
+        serde_json::from_str(&fs::read_to_string(dir.path().join("1.json")).unwrap()).unwrap();
+    let run = &["per_world", "0", "attempts", "1"];
+    let changes: [(&[&str], Value, &str); 10] = [
+        (
+            &["score"],
+            json!(7),
+            "all runs: found the score 7 where the runs have 0",
+        ),
+        (&["success"], json!(-0.5), "found the success -0.5"),
+        (&["runs"], json!(3), "found the runs 3"),
+        (&["shard", "0"], json!(2), "found part 2/2"),
+        (
+            &["per_world", "0", "score"],
+            json!(0.4),
+            "world 1: found the score 0.4",
+        ),
+        (
+            &["per_world", "0", "world"],
+            json!(0),
+            "found world 0 in the parts 0/2 and 1/2",
+        ),
+        (
+            &["per_world"],
+            json!([]),
+            "all runs: found the runs 2 where the runs have 0",
+        ),
+        (
+            &[run[0], run[1], run[2], run[3], "seed"],
+            json!(5),
+            "world 1: found 2 runs, with the seeds 0, 5",
+        ),
+        (
+            &[run[0], run[1], run[2], run[3], "score"],
+            json!(0.6),
+            "world 1, seed 1: found the score 0.6",
+        ),
+        (
+            &[run[0], run[1], run[2], run[3], "time_s"],
+            json!(-1),
+            "world 1, seed 1: found the time_s -1",
+        ),
+    ];
+    for (path, value, message) in changes {
+        let mut changed = part.clone();
+        let place = path
+            .iter()
+            .fold(&mut changed[0], |at, key| match key.parse::<usize>() {
+                Ok(index) => &mut at[index],
+                Err(_) => &mut at[*key],
+            });
+        *place = value;
+        write("changed.json", &changed.to_string());
+        let merge = ["merge", "0.json", "changed.json"];
+        refused_with(
+            dir.path(),
+            &merge,
+            &["changed.json: pure-pursuit", message, "allowed"]
+                [usize::from(path.len() == 3 && path[2] == "world")..],
+        );
+    }
+    write("empty.json", "[]");
+    refused_with(
+        dir.path(),
+        &["merge", "empty.json"],
+        &["empty.json: found no results", "allowed"],
+    );
 }
