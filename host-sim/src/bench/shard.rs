@@ -2,6 +2,7 @@
 
 use super::attempt::{Ending, Outcome};
 use super::results::{Conditions, Figures, Results, WorldResult};
+use super::worlds::error::short;
 
 /// Part `index` of `count`: every `count`-th world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,8 +68,9 @@ pub fn merge(files: &[(String, Vec<Results>)]) -> Result<Vec<Results>, String> {
             ));
         }
         for result in results {
-            let [index, count] = check(result)
-                .map_err(|why| format!("{name}: {}: {}", result.conditions.controller, why))?;
+            let [index, count] = check(result).map_err(|why| {
+                format!("{name}: {}: {}", result.conditions.controller, short(&why))
+            })?;
             let known = merged
                 .iter()
                 .position(|m| m.conditions.controller == result.conditions.controller);

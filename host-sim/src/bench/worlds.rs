@@ -9,6 +9,7 @@ pub mod generate;
 mod npy;
 pub mod numbers;
 pub mod planner;
+mod text;
 pub mod unmapped;
 pub mod wall;
 

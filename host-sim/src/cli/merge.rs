@@ -5,6 +5,8 @@ use super::{BadInput, not_what_is_read, print, put, ready_file};
 use clap::Args;
 use host_sim::bench::results::Results;
 use host_sim::bench::shard::merge;
+use host_sim::bench::worlds::error::of_json;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -42,12 +44,19 @@ pub fn execute(arguments: &MergeArguments) -> anyhow::Result<()> {
 
 fn read(file: &Path) -> Result<Vec<Results>, BadInput> {
     let name = file.display();
-    let text = std::fs::read_to_string(file)
-        .map_err(|e| BadInput(format!("{name}: cannot be read ({e})")))?;
+    let text = std::fs::read_to_string(file).map_err(|e| {
+        BadInput(match e.kind() {
+            ErrorKind::InvalidData => format!(
+                "{name}: found bytes that are no text (UTF-8); allowed: what `host-sim bench --json` writes"
+            ),
+            _ => format!("{name}: cannot be read ({e})"),
+        })
+    })?;
     serde_json::from_str(&text).map_err(|e| {
         BadInput(format!(
-            "{name}:{}: found {e}; allowed: what `host-sim bench --json` writes, whole",
-            e.line()
+            "{name}:{}: found {}; allowed: what `host-sim bench --json` writes, whole",
+            e.line(),
+            of_json(&e)
         ))
     })
 }

@@ -246,8 +246,8 @@ fn a_part_that_is_not_as_it_was_written_is_refused() {
     let changes: [(&[&str], Value, &str); 10] = [
         (
             &["score"],
-            json!(7),
-            "all runs: found the score 7 where the runs have 0",
+            json!(7e300),
+            "all runs: found the score 7e300 where the runs have 0",
         ),
         (&["success"], json!(-0.5), "found the success -0.5"),
         (&["runs"], json!(3), "found the runs 3"),
@@ -307,4 +307,161 @@ fn a_part_that_is_not_as_it_was_written_is_refused() {
         &["merge", "empty.json"],
         &["empty.json: found no results", "allowed"],
     );
+    write("cut.json", &part.to_string()[..40]);
+    refused_with(
+        dir.path(),
+        &["merge", "0.json", "cut.json"],
+        &["cut.json:1: found EOF", "at column"],
+    );
+    write("binary.json", "\u{0}");
+    fs::write(dir.path().join("binary.json"), [0xff, 0xfe, 0]).unwrap();
+    refused_with(
+        dir.path(),
+        &["merge", "binary.json"],
+        &["binary.json: found bytes that are no text"],
+    );
+}
+
+#[test]
+fn a_folder_of_lines_is_told_to_be_named_by_its_file() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("worlds-dev.jsonl.gz"), "").unwrap();
+    fs::write(dir.path().join("more.jsonl"), "").unwrap();
+    let place = dir.path().to_str().unwrap();
+    let parts = [
+        "no world_N.world, but more.jsonl, worlds-dev.jsonl.gz",
+        "a file of lines: ",
+        "/more.jsonl",
+    ];
+    refused_with(dir.path(), &ours(place), &parts);
+}
+
+#[test]
+fn what_is_found_in_a_file_is_said_and_briefly() {
+    let dir = tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| fs::write(dir.path().join(name), bytes).unwrap();
+    let good = r#"{"start": [0, 0, 0], "goal": [8, 0], "goal_radius": 1, "cyl_radius": 0.1, "common_cylinders_xy": []}"#;
+    let line = r#"{"w": 1, "cyl": [[4, 3]], "path": [[4, 0]]}"#;
+    write("common.json", good.as_bytes());
+    write("text.jsonl.gz", line.as_bytes());
+    write("binary.jsonl", &[0x1f, 0x8b, 0xff]);
+    write("cut.jsonl", format!("{line}\n{}", &line[..30]).as_bytes());
+    write(
+        "far.jsonl",
+        line.replace("[[4, 3]]", "[[1e300, 3]]").as_bytes(),
+    );
+    write(
+        "w.jsonl",
+        line.replace("\"w\": 1", "\"w\": 1e300").as_bytes(),
+    );
+    write("binary.toml", &[b'\n', 0xff, 0xfe, 0]);
+    write("far.toml", b"start = [0, 0, 0]\ngoal = [1e300, 0]\n");
+    write(
+        "wide.toml",
+        b"start = [0, 0, 0]\ngoal = [5, 0]\ngoal-radius = -1e300\n",
+    );
+    fs::create_dir_all(dir.path().join("binary")).unwrap();
+    write("binary/world_1.world", &[b'<', 0xff]);
+    fs::create_dir_all(dir.path().join("binary/path_files")).unwrap();
+    let npy = |rows: u32, data: usize| {
+        let mut bytes = b"\x93NUMPY\x01\x00\x46\x00".to_vec();
+        let header = format!("{{'descr': '<i8', 'fortran_order': False, 'shape': ({rows}, 2), }}");
+        bytes.extend(format!("{header:70}").bytes());
+        bytes.extend(vec![0; data]);
+        bytes
+    };
+    write("binary/path_files/path_1.npy", &npy(1, 16));
+    for (place, parts) in [
+        (
+            "text.jsonl.gz",
+            [
+                "text.jsonl.gz: found what is no gzip file",
+                "a name without .gz",
+            ],
+        ),
+        (
+            "binary.jsonl",
+            [
+                "binary.jsonl:1: found bytes that are no text (UTF-8)",
+                "JSON lines",
+            ],
+        ),
+        (
+            "cut.jsonl",
+            [
+                "cut.jsonl:2: found EOF while parsing",
+                "at column 30; allowed",
+            ],
+        ),
+        (
+            "far.jsonl",
+            ["far.jsonl:1: found (1e300, 3)", "-1000 to 1000"],
+        ),
+        (
+            "w.jsonl",
+            [
+                "w.jsonl:1: found invalid type: floating point `1e",
+                "allowed",
+            ],
+        ),
+        (
+            "binary.toml",
+            [
+                "binary.toml:2: found bytes that are no text (UTF-8)",
+                "TOML",
+            ],
+        ),
+        ("far.toml", ["far.toml:2: found 1e300;", "-1000 to 1000"]),
+        (
+            "wide.toml",
+            ["wide.toml:3: found -1e300;", "above 0 and up to 100"],
+        ),
+        (
+            "binary",
+            [
+                "world_1.world:1: found bytes that are no text (UTF-8)",
+                "an SDF world",
+            ],
+        ),
+        ("none.jsonl", ["none.jsonl: cannot be read", ""]),
+    ] {
+        refused_with(dir.path(), &ours(place), &parts);
+        let message = refused(dir.path(), &ours(place));
+        assert!(!message.contains("at line"), "{message}");
+        assert!(message.len() < 250, "{message}");
+    }
+    for (bytes, part) in [
+        (
+            npy(0, 0),
+            "path_1.npy: found an array without rows; allowed",
+        ),
+        (
+            npy(1, 24),
+            "path_1.npy: found an array and 8 bytes behind it; allowed",
+        ),
+    ] {
+        write("binary/path_files/path_1.npy", &bytes);
+        refused_with(dir.path(), &ours("binary"), &[part]);
+    }
+    for (common, part) in [
+        (
+            good.replace("[8, 0]", "[1e300, 0]"),
+            "common.json: found (1e300, 0)",
+        ),
+        (
+            good.replace("0.1", "-0.1"),
+            "common.json: found the cyl_radius -0.1",
+        ),
+        (
+            good.replace("\"goal_radius\": 1", "\"goal_radius\": 0"),
+            "common.json: found the goal_radius 0",
+        ),
+        (
+            good.replace("}", "\n"),
+            "common.json:2: found EOF while parsing an object at column 0",
+        ),
+    ] {
+        write("common.json", common.as_bytes());
+        refused_with(dir.path(), &ours("far.jsonl"), &[part, "allowed"]);
+    }
 }

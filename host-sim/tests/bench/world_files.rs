@@ -106,7 +106,7 @@ fn packed_lines_are_read_and_half_of_them_refused() {
     fs::write(&file, &packed[..packed.len() / 2]).unwrap();
     let message = read(&file).unwrap_err();
     assert!(
-        message.contains("worlds.jsonl.gz: cannot be read"),
+        message.contains("worlds.jsonl.gz: found a gzip file that is broken or cut short"),
         "{message}"
     );
 }

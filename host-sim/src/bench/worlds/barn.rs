@@ -2,16 +2,15 @@
 //! world a line with `w` its number, `cyl` its cylinders' x, y, and `path` the reference path's x, y, in metres. A file
 //! `common.json` beside it holds what all worlds share.
 
-use super::error::WorldError;
+use super::error::{WorldError, of_json};
+use super::text;
 use crate::bench::arena::{Arena, Circle};
-use flate2::read::MultiGzDecoder;
 use serde::Deserialize;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
-/// Longest text that is read, bytes: several times all 300 worlds.
-const MOST_BYTES: u64 = 64 << 20;
+/// What its files hold, for messages.
+const WORLD: &str = "a world: {\"w\":1,\"cyl\":[[x,y],…],\"path\":[[x,y],…]}";
+const COMMON: &str = "the common part of the worlds";
 
 #[derive(Deserialize)]
 struct Line {
@@ -33,23 +32,17 @@ struct Common {
 /// Reads `FILE.jsonl` or `FILE.jsonl.gz` and the `common.json` beside it.
 pub fn read_lines(file: &Path) -> Result<Vec<Arena>, WorldError> {
     let beside = file.with_file_name("common.json");
-    let common: Common = serde_json::from_str(&text(&beside)?)
-        .map_err(|e| malformed(&beside, e.line(), &e, "the common part of the worlds"))?;
-    check(&beside.display().to_string(), &common.common_cylinders_xy)?;
+    let common: Common = serde_json::from_str(&text::read(&beside, COMMON)?)
+        .map_err(|e| malformed(&beside, e.line(), &e, COMMON))?;
+    common.check(&beside.display().to_string())?;
     let mut arenas: Vec<Arena> = Vec::new();
-    for (index, line) in text(file)?.lines().enumerate() {
+    for (index, line) in text::read(file, "JSON lines")?.lines().enumerate() {
         if line.trim().is_empty() {
             continue;
         }
         let place = format!("{}:{}", file.display(), index + 1);
-        let read: Line = serde_json::from_str(line).map_err(|e| {
-            malformed(
-                file,
-                index + 1,
-                &e,
-                "a world: {\"w\":1,\"cyl\":[[x,y],…],\"path\":[[x,y],…]}",
-            )
-        })?;
+        let read: Line =
+            serde_json::from_str(line).map_err(|e| malformed(file, index + 1, &e, WORLD))?;
         check(&place, &read.cyl)?;
         check(&place, &read.path)?;
         if arenas.iter().any(|a| a.number == read.w) {
@@ -72,6 +65,22 @@ pub fn read_lines(file: &Path) -> Result<Vec<Arena>, WorldError> {
 }
 
 impl Common {
+    fn check(&self, place: &str) -> Result<(), WorldError> {
+        let [x, y, _] = self.start;
+        check(place, &self.common_cylinders_xy)?;
+        check(place, &[[x, y], self.goal])?;
+        for (name, radius) in [
+            ("goal_radius", self.goal_radius),
+            ("cyl_radius", self.cyl_radius),
+        ] {
+            if !(radius > 0.0 && radius <= 100.0) {
+                let found = format!("the {name} {radius}");
+                return Err(WorldError::wrong(place, found, "above 0 and up to 100 m"));
+            }
+        }
+        Ok(())
+    }
+
     fn arena(&self, number: u32, cylinders: &[[f64; 2]], path: &[[f64; 2]]) -> Arena {
         let mut route = vec![[self.start[0], self.start[1]]];
         route.extend(path);
@@ -98,34 +107,9 @@ impl Common {
     }
 }
 
-/// A file's text, unpacked if it is packed.
-fn text(file: &Path) -> Result<String, WorldError> {
-    let unreadable = |why: String| WorldError::Unreadable {
-        file: file.display().to_string(),
-        why,
-    };
-    let opened = File::open(file).map_err(|e| unreadable(e.to_string()))?;
-    let mut bytes = Vec::new();
-    let read = if file.extension().is_some_and(|e| e == "gz") {
-        MultiGzDecoder::new(opened)
-            .take(MOST_BYTES + 1)
-            .read_to_end(&mut bytes)
-    } else {
-        opened.take(MOST_BYTES + 1).read_to_end(&mut bytes)
-    };
-    read.map_err(|e| unreadable(e.to_string()))?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(unreadable("it is longer than 64 MiB".to_owned()));
-    }
-    String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text".to_owned()))
-}
-
 fn malformed(file: &Path, line: usize, error: &serde_json::Error, allowed: &str) -> WorldError {
-    WorldError::wrong(
-        format!("{}:{line}", file.display()),
-        error.to_string(),
-        allowed,
-    )
+    let place = format!("{}:{line}", file.display());
+    WorldError::wrong(place, of_json(error), allowed)
 }
 
 /// Coordinates must be on the ground that the simulator is built for.

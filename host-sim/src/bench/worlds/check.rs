@@ -1,6 +1,6 @@
 //! Whether a robot has a chance in a world at all.
 
-use super::error::WorldError;
+use super::error::{WorldError, short};
 use super::planner;
 use crate::bench::arena::{Arena, length};
 use crate::bench::attempt::body_clearance;
@@ -18,7 +18,7 @@ pub fn check(place: &str, arenas: &[Arena], body: &Body) -> Result<(), WorldErro
             Err(WorldError::Unusable {
                 place: place.to_owned(),
                 number: arena.number,
-                why,
+                why: short(&why),
             })
         })
     })

@@ -42,8 +42,51 @@ impl WorldError {
     ) -> Self {
         Self::Wrong {
             place: place.into(),
-            found: found.into(),
+            found: short(&found.into()),
             allowed: allowed.into(),
         }
+    }
+}
+
+/// What is wrong with JSON, without the line: that stands before it.
+pub fn of_json(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let at = format!(" at line {} column {}", error.line(), error.column());
+    match text.strip_suffix(&at) {
+        Some(what) => short(&format!("{what} at column {}", error.column())),
+        None => short(&text),
+    }
+}
+
+/// Most digits of a number in a message.
+const DIGITS: usize = 20;
+
+/// A message whose numbers have an exponent where they would have hundreds of digits.
+pub fn short(text: &str) -> String {
+    let mut said = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(|c: char| c.is_ascii_digit()) {
+        let (before, number) = rest.split_at(at);
+        let end = number.find(|c: char| !c.is_ascii_digit() && c != '.');
+        let (number, after) = number.split_at(end.unwrap_or(number.len()));
+        said += before;
+        match number.parse::<f64>() {
+            Ok(x) if number.len() > DIGITS => said += &format!("{x:e}"),
+            _ => said += number,
+        }
+        rest = after;
+    }
+    said + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn only_long_numbers_get_an_exponent() {
+        assert_eq!(short("world 7: (0.25, -3)."), "world 7: (0.25, -3).");
+        assert_eq!(short(&format!("`{}`, m", 1e300)), "`1e300`, m");
+        assert_eq!(short(&format!("{} m", -1.5e-40)), "-1.5e-40 m");
     }
 }

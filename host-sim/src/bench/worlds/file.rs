@@ -13,7 +13,7 @@
 
 use super::check::SHORTEST;
 use super::error::WorldError;
-use super::wall;
+use super::{text, wall};
 use crate::bench::arena::{Arena, Circle, Mover, length};
 use serde::Deserialize;
 use std::path::Path;
@@ -69,10 +69,7 @@ fn one() -> Spanned<f64> {
 
 /// Reads a world; its number is 0. Without a route in the file its route is left empty.
 pub fn read(file: &Path) -> Result<Arena, WorldError> {
-    let text = std::fs::read_to_string(file).map_err(|e| WorldError::Unreadable {
-        file: file.display().to_string(),
-        why: e.to_string(),
-    })?;
+    let text = text::read(file, "a world as TOML")?;
     let source = Source {
         file: file.display().to_string(),
         text: &text,

@@ -5,6 +5,7 @@
 use super::error::WorldError;
 use super::npy;
 use super::numbers::Numbers;
+use super::text;
 use crate::bench::arena::{Arena, Circle};
 use roxmltree::{Document, Node};
 use std::fs::File;
@@ -20,21 +21,12 @@ const GOAL_RADIUS: f64 = 1.0;
 const CELL: f64 = 0.15;
 const ORIGIN: [f64; 2] = [-4.575, 5.075];
 
-/// Longest file that is read, bytes.
+/// Longest path that is read, bytes.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// Reads the worlds of a folder that were asked for.
 pub fn read_folder(folder: &Path, numbers: &Numbers) -> Result<Vec<Arena>, WorldError> {
-    let mut found = worlds_in(folder)?;
-    found.extend(worlds_in(&folder.join("world_files")).unwrap_or_default());
-    if found.is_empty() {
-        return Err(WorldError::wrong(
-            folder.display().to_string(),
-            "no world_N.world",
-            "a folder with world_N.world and path_files/path_N.npy",
-        ));
-    }
-    found
+    all_worlds(folder)?
         .into_iter()
         .filter(|(number, _)| numbers.holds(*number))
         .map(|(number, file)| {
@@ -55,6 +47,37 @@ pub fn read_folder(folder: &Path, numbers: &Numbers) -> Result<Vec<Arena>, World
             })
         })
         .collect()
+}
+
+/// Numbers and files of a folder's worlds, of which there is one at least.
+pub fn all_worlds(folder: &Path) -> Result<Vec<(u32, PathBuf)>, WorldError> {
+    let mut found = worlds_in(folder)?;
+    found.extend(worlds_in(&folder.join("world_files")).unwrap_or_default());
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    const ALLOWED: &str = "a folder with world_N.world and path_files/path_N.npy";
+    let lines = lines_in(folder);
+    let place = folder.display().to_string();
+    Err(if lines.is_empty() {
+        WorldError::wrong(place, "no world_N.world", ALLOWED)
+    } else {
+        let found = format!("no world_N.world, but {}", lines.join(", "));
+        let file = folder.join(&lines[0]);
+        let allowed = format!("{ALLOWED}, or a file of lines: {}", file.display());
+        WorldError::wrong(place, found, allowed)
+    })
+}
+
+/// Names of a folder's files of JSON lines.
+fn lines_in(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".jsonl") || name.ends_with(".jsonl.gz"))
+        .collect();
+    names.sort();
+    names
 }
 
 fn worlds_in(folder: &Path) -> Result<Vec<(u32, PathBuf)>, WorldError> {
@@ -80,17 +103,7 @@ fn worlds_in(folder: &Path) -> Result<Vec<(u32, PathBuf)>, WorldError> {
 /// Cylinders that stand in a world, at their collision shapes' places.
 pub fn read_cylinders(file: &Path) -> Result<Vec<Circle>, WorldError> {
     let name = file.display().to_string();
-    let unreadable = |why: String| WorldError::Unreadable {
-        file: name.clone(),
-        why,
-    };
-    let mut text = String::new();
-    let read = File::open(file)
-        .and_then(|f| f.take(MOST_BYTES + 1).read_to_string(&mut text))
-        .map_err(|e| unreadable(e.to_string()))?;
-    if read as u64 > MOST_BYTES {
-        return Err(unreadable("it is longer than 64 MiB".to_owned()));
-    }
+    let text = text::read(file, "an SDF world")?;
     let document = Document::parse(&text)
         .map_err(|e| WorldError::wrong(name.clone(), e.to_string(), "an SDF world, whole"))?;
     let mut circles = Vec::new();

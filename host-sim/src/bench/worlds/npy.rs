@@ -32,7 +32,7 @@ pub fn pairs(bytes: &[u8]) -> Result<Vec<[f64; 2]>, String> {
     if entry("fortran_order").is_none_or(|e| !e.starts_with("False")) {
         return Err("an array in Fortran order".to_owned());
     }
-    let rows = entry("shape")
+    let rows: usize = entry("shape")
         .and_then(|e| e.strip_prefix('(')?.split_once(')'))
         .and_then(|(shape, _)| shape.trim_end_matches(',').split_once(','))
         .and_then(|(rows, columns)| (columns.trim() == "2").then(|| rows.trim().parse().ok())?)
@@ -42,19 +42,25 @@ pub fn pairs(bytes: &[u8]) -> Result<Vec<[f64; 2]>, String> {
         .and_then(|e| e.strip_prefix('\'')?.split_once('\''))
         .map_or("", |(kind, _)| kind);
     let data = &bytes[start + length..];
-    let numbers: Vec<f64> = match kind {
-        "<i4" => read(data, |b| f64::from(i32::from_le_bytes(b))),
-        "<i8" => read(data, |b| i64::from_le_bytes(b) as f64),
-        "<f4" => read(data, |b| f64::from(f32::from_le_bytes(b))),
-        "<f8" => read(data, f64::from_le_bytes),
+    let (size, numbers): (usize, Vec<f64>) = match kind {
+        "<i4" => (4, read(data, |b| f64::from(i32::from_le_bytes(b)))),
+        "<i8" => (8, read(data, |b| i64::from_le_bytes(b) as f64)),
+        "<f4" => (4, read(data, |b| f64::from(f32::from_le_bytes(b)))),
+        "<f8" => (8, read(data, f64::from_le_bytes)),
         other => return Err(format!("an array of `{other}`")),
     };
+    if rows == 0 {
+        return Err("an array without rows".to_owned());
+    }
     if numbers.len() < 2 * rows {
         return Err(truncated());
     }
+    let beyond = data.len() - 2 * rows * size;
+    if beyond > 0 {
+        return Err(format!("an array and {beyond} bytes behind it"));
+    }
     Ok(numbers
         .chunks_exact(2)
-        .take(rows)
         .map(|pair| [pair[0], pair[1]])
         .collect())
 }
