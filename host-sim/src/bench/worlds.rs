@@ -51,6 +51,22 @@ pub fn load(place: &str, numbers: &Numbers, body: &Body) -> Result<Vec<Arena>, W
     Ok(arenas)
 }
 
+/// The numbers of a place's worlds; none where every number is one.
+pub fn numbers_in(place: &str) -> Result<Option<Vec<u32>>, WorldError> {
+    let path = Path::new(place);
+    if place.starts_with("generated:") {
+        Ok(None)
+    } else if path.is_dir() {
+        let worlds = gazebo::all_worlds(path)?;
+        Ok(Some(worlds.into_iter().map(|(number, _)| number).collect()))
+    } else if place.ends_with(".toml") {
+        Ok(Some(vec![0]))
+    } else {
+        let worlds = barn::read_lines(path)?;
+        Ok(Some(worlds.iter().map(|a| a.number).collect()))
+    }
+}
+
 /// Gives a world the shortest route that is not too tight; the straight line if there is none.
 fn plan(arena: &mut Arena, body: &Body) {
     let start = [arena.start[0], arena.start[1]];

@@ -221,11 +221,22 @@ fn arenas(
         ))
         .into());
     }
+    if arenas.iter().any(|a| a.course.is_some()) && arguments.task != Task::Path {
+        return Err(BadInput(format!(
+            "--task {}: {} are to be followed; allowed with --task path",
+            arguments.task.name(),
+            arguments.worlds
+        ))
+        .into());
+    }
     match (&arguments.unmapped, arguments.task) {
         (Some(file), Task::Unmapped) if file.as_os_str() == "generated" => {
             unmapped::place(&mut arenas);
         }
-        (Some(file), Task::Unmapped) => unmapped::add(file, &mut arenas)?,
+        (Some(file), Task::Unmapped) => {
+            worlds::check::check(&arguments.worlds, &arenas, body)?;
+            unmapped::add(file, &arguments.worlds, &mut arenas, body)?;
+        }
         (None, Task::Unmapped) => {
             return Err(BadInput(
                 "--task unmapped: no cylinders; allowed with --unmapped FILE.csv, or --unmapped generated".to_owned(),
@@ -239,14 +250,6 @@ fn arenas(
             .into());
         }
         (None, _) => {}
-    }
-    if arenas.iter().any(|a| a.course.is_some()) && arguments.task != Task::Path {
-        return Err(BadInput(format!(
-            "--task {}: {} are to be followed; allowed with --task path",
-            arguments.task.name(),
-            arguments.worlds
-        ))
-        .into());
     }
     worlds::check::check(&arguments.worlds, &arenas, body)?;
     Ok(arenas)

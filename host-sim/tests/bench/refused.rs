@@ -323,6 +323,81 @@ fn a_part_that_is_not_as_it_was_written_is_refused() {
 }
 
 #[test]
+fn a_file_of_cylinders_fits_the_worlds_that_are_chosen() {
+    let dir = tempdir().unwrap();
+    let common = r#"{"start": [0, 0, 0], "goal": [8, 0], "goal_radius": 1, "cyl_radius": 0.1, "common_cylinders_xy": []}"#;
+    fs::write(dir.path().join("common.json"), common).unwrap();
+    let line = |n: u32| format!("{{\"w\": {n}, \"cyl\": [[4, 3]], \"path\": [[4, 0]]}}\n");
+    fs::write(dir.path().join("three.jsonl"), [1, 2, 3].map(line).concat()).unwrap();
+    let unmapped = |numbers: &'static str| {
+        let mut arguments = vec!["bench", "--worlds", "three.jsonl", "--numbers", numbers];
+        arguments.extend(["--task", "unmapped", "--unmapped", "extra.csv"]);
+        arguments.extend(["--controllers", "pure-pursuit", "--time-limit", "1"]);
+        arguments
+    };
+    let extra = |text: &str| fs::write(dir.path().join("extra.csv"), text).unwrap();
+    extra("world,x,y,r\n1,4,1,0.1\n2,4,1,0.1\n2,5,1,0.1\n");
+    // Lines of worlds that are not chosen are for other choices.
+    sim(dir.path()).args(unmapped("2")).assert().success();
+    refused_with(
+        dir.path(),
+        &unmapped("all"),
+        &[
+            "extra.csv: found no cylinder for world 3;",
+            "allowed: a line or more",
+        ],
+    );
+    refused_with(dir.path(), &unmapped("3"), &["no cylinder for world 3"]);
+    extra("# of another place\n2,4,1,0.1\n7,4,1,0.1\n");
+    refused_with(
+        dir.path(),
+        &unmapped("2"),
+        &["extra.csv:3: found world 7, which is not in three.jsonl"],
+    );
+    let fence: String = (-40..=40)
+        .map(|k| format!("2,4,{},0.2\n", f64::from(k) / 10.0))
+        .collect();
+    let ring: String = (0..40)
+        .map(|k| f64::from(k) / 40.0 * std::f64::consts::TAU)
+        .map(|turn| format!("2,{:.3},{:.3},0.2\n", 1.5 * turn.cos(), 1.5 * turn.sin()))
+        .collect();
+    for (text, line, part) in [
+        (
+            "2,4,1,0.1\n2,8,0.1,0.3\n".to_owned(),
+            2,
+            "the goal (8, 0) is inside the obstacle",
+        ),
+        (
+            "2,0.3,0,0.1\n2,4,1,0.1\n".to_owned(),
+            1,
+            "the robot touches an obstacle where it starts",
+        ),
+        (format!("{ring}{fence}"), 39, "no route from"),
+    ] {
+        extra(&text);
+        let message = refused(dir.path(), &unmapped("2"));
+        let place = message
+            .split(": with this cylinder")
+            .next()
+            .unwrap_or_default();
+        let found: u32 = place
+            .split(':')
+            .nth(2)
+            .unwrap_or_default()
+            .parse()
+            .unwrap_or_default();
+        assert!(
+            place.contains("extra.csv:") && message.contains(part),
+            "{message}"
+        );
+        assert!(
+            found.abs_diff(line) < 4 && message.contains("world 2"),
+            "{line}: {message}"
+        );
+    }
+}
+
+#[test]
 fn a_folder_of_lines_is_told_to_be_named_by_its_file() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("worlds-dev.jsonl.gz"), "").unwrap();

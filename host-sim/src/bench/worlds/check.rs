@@ -24,7 +24,8 @@ pub fn check(place: &str, arenas: &[Arena], body: &Body) -> Result<(), WorldErro
     })
 }
 
-fn fault(arena: &Arena, body: &Body) -> Option<String> {
+/// What forbids a world, and what is allowed.
+pub(super) fn fault(arena: &Arena, body: &Body) -> Option<String> {
     let [gx, gy] = arena.goal;
     let [sx, sy, _] = arena.start;
     if length(&[[sx, sy], [gx, gy]]) <= arena.goal_radius {

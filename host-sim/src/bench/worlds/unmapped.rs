@@ -1,10 +1,11 @@
 //! Cylinders that the planner's path knows nothing of: from a CSV file with `world,x,y,r` a line, metres, or placed on
 //! the path.
 
-use super::error::WorldError;
-use super::planner;
+use super::error::{WorldError, short};
+use super::{check, planner, text};
 use crate::bench::arena::{Arena, Circle};
 use crate::bench::baselines::route::{Route, distance};
+use crate::bench::body::Body;
 use crate::bench::seeds::{Purpose, normal, stream};
 use rand::RngExt;
 use rayon::prelude::*;
@@ -28,26 +29,79 @@ const FREE: f64 = 1.2;
 /// Throws before a world is left with fewer.
 const THROWS: usize = 200;
 
-/// Adds the file's cylinders to their worlds. Lines of worlds that are not there are no error: a file serves any choice
-/// of worlds.
-pub fn add(file: &Path, arenas: &mut [Arena]) -> Result<(), WorldError> {
-    let place = |line: u64| format!("{}:{line}", file.display());
+/// Adds the file's cylinders to their worlds, which come from `place` and are fit for `body` without them. Every world must
+/// get some, so that none is driven as if it were mapped; lines of others that are in that place are for other choices.
+pub fn add(file: &Path, place: &str, arenas: &mut [Arena], body: &Body) -> Result<(), WorldError> {
+    let cylinders = read(file)?;
+    let at = |line: u64| format!("{}:{line}", file.display());
+    if let Some(there) = super::numbers_in(place)? {
+        let stray = cylinders
+            .iter()
+            .find(|(_, world, _)| !there.contains(world));
+        if let Some((line, world, _)) = stray {
+            let found = format!("world {world}, which is not in {place}");
+            return Err(WorldError::wrong(at(*line), found, "worlds that are there"));
+        }
+    }
+    let own = |number: u32| {
+        cylinders
+            .iter()
+            .filter(move |(_, world, _)| *world == number)
+    };
+    let without: Vec<u32> = arenas.iter().map(|a| a.number).collect();
+    let without: Vec<u32> = without
+        .into_iter()
+        .filter(|n| own(*n).next().is_none())
+        .collect();
+    if let Some(first) = without.first() {
+        let found = match without.len() {
+            1 => format!("no cylinder for world {first}"),
+            n => format!("no cylinder for world {first} and {} more", n - 1),
+        };
+        return Err(WorldError::wrong(
+            file.display().to_string(),
+            found,
+            "a line or more for every world that is chosen; --numbers chooses those that have one",
+        ));
+    }
+    arenas.par_iter_mut().try_for_each(|arena| {
+        let mapped = arena.circles.len();
+        arena
+            .circles
+            .extend(own(arena.number).map(|(.., circle)| *circle));
+        if check::fault(arena, body).is_none() {
+            return Ok(());
+        }
+        // Which line is it? The first with which the world is unfit.
+        arena.circles.truncate(mapped);
+        for (line, number, circle) in own(arena.number) {
+            arena.circles.push(*circle);
+            if let Some(why) = check::fault(arena, body) {
+                return Err(WorldError::Unusable {
+                    place: at(*line),
+                    number: *number,
+                    why: short(&format!("with this cylinder {why}")),
+                });
+            }
+        }
+        Ok(())
+    })
+}
+
+/// A file's cylinders, each with its line and its world.
+fn read(file: &Path) -> Result<Vec<(u64, u32, Circle)>, WorldError> {
+    const LINES: &str = "world,x,y,r a line";
+    let name = file.display().to_string();
+    let text = text::read(file, LINES)?;
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .flexible(true)
-        .from_path(file)
-        .map_err(|e| WorldError::Unreadable {
-            file: file.display().to_string(),
-            why: e.to_string(),
-        })?;
-    let mut any = false;
+        .from_reader(text.as_bytes());
+    let mut cylinders = Vec::new();
     for (index, record) in reader.records().enumerate() {
-        let record = record.map_err(|e| WorldError::Unreadable {
-            file: file.display().to_string(),
-            why: e.to_string(),
-        })?;
+        let record = record.map_err(|e| WorldError::wrong(&name, e.to_string(), LINES))?;
         let line = record.position().map_or(0, csv::Position::line);
         let fields: Vec<&str> = record.iter().collect();
         if index == 0 && fields == ["world", "x", "y", "r"] {
@@ -55,25 +109,17 @@ pub fn add(file: &Path, arenas: &mut [Arena]) -> Result<(), WorldError> {
         }
         let (number, circle) = cylinder(&fields).ok_or_else(|| {
             WorldError::wrong(
-                place(line),
+                format!("{name}:{line}"),
                 format!("`{}`", fields.join(",")),
                 "world,x,y,r: a world's number, a place within 1000 m, a radius above 0 and up to 10 m",
             )
         })?;
-        any = true;
-        if let Some(arena) = arenas.iter_mut().find(|a| a.number == number) {
-            arena.circles.push(circle);
-        }
+        cylinders.push((line, number, circle));
     }
-    if any {
-        Ok(())
-    } else {
-        Err(WorldError::wrong(
-            file.display().to_string(),
-            "no cylinder",
-            "world,x,y,r a line",
-        ))
+    if cylinders.is_empty() {
+        return Err(WorldError::wrong(name, "no cylinder", LINES));
     }
+    Ok(cylinders)
 }
 
 /// Places three cylinders on every path, the same ones for the same world. Each is thrown anew until a disc of 0.3 m still
