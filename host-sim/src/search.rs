@@ -79,6 +79,18 @@ pub enum SearchError {
     /// Nothing moves.
     #[error("no number can move: --only and --fix leave none")]
     NothingMoves,
+    /// Not even one generation is allowed.
+    #[error(
+        "--evaluations {found}: less than one generation; allowed is {least} or more where {dimensions} numbers move"
+    )]
+    TooFew {
+        /// Candidates that are allowed.
+        found: usize,
+        /// Those of a generation.
+        least: usize,
+        /// Numbers that move.
+        dimensions: usize,
+    },
     /// The start itself cannot be judged.
     #[error("the design cannot be judged as it is: {0}")]
     Start(String),
@@ -100,6 +112,13 @@ pub struct Search<'a> {
     pub known: &'a BTreeMap<u64, f64>,
     /// Whether to stop, looked at before each candidate.
     pub stop: &'a AtomicBool,
+}
+
+/// Candidates of a generation: fewer cannot be judged.
+fn generation(dimensions: usize) -> usize {
+    let nothing = |_: &DVector<f64>| 0.0;
+    let optimiser = CMAESOptions::new(vec![0.0; dimensions], 1.0).build(nothing);
+    optimiser.map_or(0, |optimiser| optimiser.parameters().lambda())
 }
 
 /// The cost of what cannot be judged: worse than anything, and finite.
@@ -153,6 +172,25 @@ impl ParallelObjectiveFunction for &Record<'_> {
     }
 }
 
+impl Settings {
+    /// Refuses a search that would end before it has begun.
+    ///
+    /// # Errors
+    ///
+    /// [`SearchError::TooFew`].
+    pub fn check(&self, dimensions: usize) -> Result<(), SearchError> {
+        let (found, least) = (self.evaluations, generation(dimensions));
+        if found >= least {
+            return Ok(());
+        }
+        Err(SearchError::TooFew {
+            found,
+            least,
+            dimensions,
+        })
+    }
+}
+
 impl Search<'_> {
     /// Searches from a start of known cost, and shows what is known after every generation, and once more when it is
     /// interrupted.
@@ -175,6 +213,7 @@ impl Search<'_> {
             refused: AtomicUsize::new(0),
         };
         let dimensions = self.problem.dimensions();
+        self.settings.check(dimensions)?;
         let mut optimiser = CMAESOptions::new(vec![0.0; dimensions], self.settings.sigma)
             .seed(self.settings.seed)
             .tol_fun(TOLERANCE)

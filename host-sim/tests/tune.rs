@@ -348,7 +348,7 @@ fn the_follower_drives_better_and_its_distance_stays_evenly_divided() {
     // So even that a module takes the quickest route, and that it drives on from there.
     let module = fs::read_to_string(folder.path().join("drive/tuned.rs")).unwrap();
     assert!(module.contains("TwinTable"), "{module}");
-    let again = "drive/tuned.fll --scenario line --evaluations 10 --out again";
+    let again = "drive/tuned.fll --scenario line --evaluations 11 --out again";
     tune(folder.path(), again).assert().success();
     // A wish that holds d still does.
     let still = format!(
@@ -510,6 +510,10 @@ fn bad_wishes_are_refused() {
         ("--validate 0.9999", &["allowed is a number from 0 to 0.9"]),
         ("--sigma nan", &["allowed is a number from"]),
         ("--evaluations 0", &["allowed is a whole number"]),
+        (
+            "--evaluations 3",
+            &["--evaluations 3: less than one generation; allowed is"],
+        ),
         (
             "--resume none.json",
             &["--resume none.json", "cannot be read"],

@@ -96,6 +96,12 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
         return list(&start, &knobs);
     }
     nothing_lost(arguments)?;
+    let settings = Settings {
+        seed: arguments.seed,
+        sigma: arguments.sigma,
+        evaluations: arguments.evaluations as usize,
+    };
+    settings.check(knobs.len()).map_err(bad)?;
     let tuning = Tuning {
         campaigns: campaigns(arguments, &views)?,
         start,
@@ -126,11 +132,7 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
     let bar = bar(arguments.evaluations);
     let found = Search {
         problem: &tuning,
-        settings: Settings {
-            seed: arguments.seed,
-            sigma: arguments.sigma,
-            evaluations: arguments.evaluations as usize,
-        },
+        settings,
         known: &known,
         stop: &INTERRUPTED,
     }
@@ -215,6 +217,13 @@ fn campaigns(
         return Err(BadInput(format!(
             "--numbers {}: no such world in {}; allowed are numbers that are there",
             arguments.numbers, arguments.worlds
+        ))
+        .into());
+    }
+    if let Some(sealed) = arenas.iter().find(|arena| arena.sealed) {
+        return Err(BadInput(format!(
+            "--worlds {}: world {} is sealed, no settings arrive there; allowed are worlds with a way to the goal",
+            arguments.worlds, sealed.number
         ))
         .into());
     }
@@ -322,6 +331,8 @@ fn command(arguments: &TuneArguments) -> String {
 #[derive(Serialize)]
 struct Report {
     candidates: usize,
+    /// Only told: after a break the file is as it would have been without.
+    #[serde(skip)]
     known: usize,
     refused: usize,
     stopped: String,
