@@ -156,7 +156,8 @@ impl Figures {
         let runs = outcomes.len();
         let n = runs.max(1) as f64;
         let share = |ending| outcomes.iter().filter(|o| o.ending == ending).count() as f64 / n;
-        let mean = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>() / n;
+        let mean =
+            |of: fn(&Outcome) -> f64| outcomes.iter().map(of).fold(0.0, |sum, x| sum + x) / n;
         let reached: Vec<f64> = outcomes
             .iter()
             .filter(|o| o.ending == Ending::Reached)

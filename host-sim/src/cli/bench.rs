@@ -27,7 +27,8 @@ use std::path::{Path, PathBuf};
 pub struct BenchArguments {
     /// Where the worlds are: BARN's as a folder (world_N.world, path_files/path_N.npy) or as JSON lines (.jsonl, .jsonl.gz,
     /// with common.json beside it), one of your own (.toml), or generated:KIND with KIND one of barn, corridor, rooms,
-    /// slalom, forest, moving, u-trap, sealed, and options such as generated:barn,fill=0.2,smooth=3,radius=0.36.
+    /// slalom, forest, moving, u-trap, sealed, and options such as generated:barn,fill=0.2,smooth=3,radius=0.36; or generated:routes,
+    /// eight routes to follow.
     #[arg(long, value_name = "PLACE")]
     worlds: String,
     /// Which worlds (of generated ones there are 100 unless a list says more): all, dev (not divisible by 6), test (the others), or a list such as 1,7,10-19,0-294/6.
@@ -40,7 +41,9 @@ pub struct BenchArguments {
     /// for a disc of 0.3 m. For `--task unmapped`.
     #[arg(long, value_name = "FILE")]
     unmapped: Option<PathBuf>,
-    /// cone16, cone8, ultrasonic5, lidar720, or cones:COUNT:FIELD:WIDTH in degrees.
+    /// cone16, cone8, ultrasonic5, lidar720, or cones:COUNT:FIELD:WIDTH: 3 to 64 cones over a field above 0 and up to 360 degrees,
+    /// each 0 to 90 degrees wide. More than 32 are to `ours` what a lidar's beams are: the nearest echo of each of 32 sectors, with
+    /// the lidar's preset.
     #[arg(long, default_value = "cone16", value_name = "NAME")]
     sensors: String,
     /// The robot's outline: jackal (rectangle:0.508x0.430), rectangle:LENGTHxWIDTH, disc:RADIUS, or polygon:X,Y:X,Y:… with 3
@@ -125,16 +128,21 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
                 .chain(r.sound.iter().flat_map(|s| &s.per_world))
         })
         .flat_map(|w| &w.attempts)
-        .map(|a| a.outcome.time_s)
-        .sum();
+        .fold(0.0, |sum, a| sum + a.outcome.time_s);
     let spent = begin.elapsed().as_secs_f64() * pool.current_num_threads() as f64;
 
     // All of it is tried: what cannot be written takes nothing else along.
-    let printed = print(format_args!(
-        "{}{simulated:.0} s driven, {:.0} × real time a thread\n",
-        table::all(&results),
-        simulated / spent
-    ));
+    let printed = match (shard, campaign.arenas.is_empty()) {
+        (Some(Shard { index, count }), true) => print(format_args!(
+            "shard {index}/{count} has no world: there are fewer than {}\n",
+            index + 1
+        )),
+        _ => print(format_args!(
+            "{}{simulated:.0} s driven, {:.0} × real time a thread\n",
+            table::all(&results),
+            simulated / spent
+        )),
+    };
     let stored = arguments
         .json
         .as_ref()

@@ -52,7 +52,8 @@ pub struct TuneArguments {
     /// What is driven: path, goal, unmapped (with three cylinders on every path that it does not know).
     #[arg(long, value_enum, value_name = "TASK,…", value_delimiter = ',', default_values_t = [Task::Goal, Task::Path, Task::Unmapped])]
     task: Vec<Task>,
-    /// Sensors, as for `bench`; they also choose the preset to start from.
+    /// Sensors, as for `bench`; their number chooses the preset to start from: up to 6 ultrasonic5's, up to 11 cone8's, up to
+    /// 32 cone16's, more the lidar's.
     #[arg(long, value_name = "NAME", default_value = "cone16")]
     sensors: String,
     /// Speed caps, m/s.

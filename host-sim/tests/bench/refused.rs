@@ -1,6 +1,7 @@
 //! What `host-sim bench`, `tune` and `merge` refuse before anything is driven, and what they say then.
 
 use crate::command::sim;
+use host_sim::bench::worlds::generate::KINDS;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -538,5 +539,56 @@ fn what_is_found_in_a_file_is_said_and_briefly() {
     ] {
         write("common.json", common.as_bytes());
         refused_with(dir.path(), &ours("far.jsonl"), &[part, "allowed"]);
+    }
+}
+
+#[test]
+fn a_shard_without_worlds_says_so_and_has_no_zero_below_zero() {
+    let dir = tempdir().unwrap();
+    for shard in ["0/3", "1/3", "2/3"] {
+        let file = format!("{}.json", &shard[..1]);
+        let output = sim(dir.path())
+            .args(blind(&["--shard", shard, "--report", "report"]))
+            .args(["--json", &file])
+            .assert()
+            .success();
+        let text = String::from_utf8_lossy(&output.get_output().stdout).into_owned();
+        assert_eq!(
+            shard == "2/3",
+            text.contains("shard 2/3 has no world"),
+            "{text}"
+        );
+    }
+    for name in [
+        "2.json",
+        "report/table.txt",
+        "report/per-world.csv",
+        "report/index.html",
+    ] {
+        let text = fs::read_to_string(dir.path().join(name)).unwrap();
+        assert!(!text.contains("-0.0"), "{name}: {text}");
+    }
+    sim(dir.path())
+        .args(["merge", "0.json", "1.json", "2.json"])
+        .assert()
+        .success();
+}
+
+#[test]
+fn help_names_every_kind_of_world_and_the_limits_of_sensors() {
+    let dir = tempdir().unwrap();
+    let output = sim(dir.path()).args(["bench", "--help"]).assert().success();
+    let text = String::from_utf8_lossy(&output.get_output().stdout).into_owned();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let text = words.join(" ");
+    for kind in KINDS
+        .iter()
+        .map(|kind| kind.name)
+        .chain(["generated:routes"])
+    {
+        assert!(text.contains(kind), "{kind}");
+    }
+    for limits in ["3 to 64 cones", "0 to 90 degrees wide", "More than 32"] {
+        assert!(text.contains(limits), "{limits}: {text}");
     }
 }
