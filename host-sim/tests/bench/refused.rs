@@ -592,3 +592,28 @@ fn help_names_every_kind_of_world_and_the_limits_of_sensors() {
         assert!(text.contains(limits), "{limits}: {text}");
     }
 }
+
+/// The world that the document shows, as it stands there.
+#[test]
+fn the_document_s_own_world_can_be_driven() {
+    let document = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/bench.md");
+    let document = fs::read_to_string(document).unwrap();
+    let (_, rest) = document.split_once("```toml\n").unwrap();
+    let (world, _) = rest.split_once("```").unwrap();
+    assert!(world.contains("mover"), "{world}");
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("own.toml"), world).unwrap();
+    for task in ["path", "goal"] {
+        let arguments = [
+            "bench", "--worlds", "own.toml", "--task", task, "--seeds", "10",
+        ];
+        sim(dir.path())
+            .args(arguments)
+            .args(["--controllers", "ours", "--json", "own.json"])
+            .assert()
+            .success();
+        let text = fs::read_to_string(dir.path().join("own.json")).unwrap();
+        let results: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(results[0]["success"], 1.0, "{task}");
+    }
+}

@@ -8,7 +8,7 @@
 //! route = [[0.0, 0.0], [0.0, 8.0]]   # planned when left out
 //! circle = [{ at = [0.3, 4.0], radius = 0.2 }]
 //! wall = [{ from = [-1.0, 0.0], to = [-1.0, 8.0] }]
-//! mover = [{ from = [-1.0, 2.0], to = [1.0, 2.0], speed = 0.4, radius = 0.2 }]
+//! mover = [{ from = [1.5, 2.0], to = [1.5, 6.0], speed = 0.4, radius = 0.2 }]
 //! ```
 
 use super::check::SHORTEST;
