@@ -239,7 +239,8 @@ fn wrong_input_ends_with_2_and_one_message() {
     );
     put("count.log", b"FLASER -3 1 1 0 0 0 0 0 0\n");
     put("tail.log", &whole.as_bytes()[..whole.len() - 2500]);
-    let cases: [(&[&str], &str); 15] = [
+    fs::create_dir_all(dir.path().join("taken/ticks.csv")).unwrap();
+    let cases: [(&[&str], &str); 16] = [
         (&["none.log"], "none.log: cannot be read"),
         (
             &["cut.log.gz"],
@@ -285,6 +286,10 @@ fn wrong_input_ends_with_2_and_one_message() {
             "3 to 8 vertices",
         ),
         (&["whole.log", "--out", "empty.log"], "empty.log is a file"),
+        (
+            &["whole.log", "--out", "taken"],
+            "--out taken/ticks.csv: cannot be written",
+        ),
     ];
     for (arguments, part) in cases {
         let output = sim(dir.path()).args(arguments).assert().code(2);
