@@ -26,6 +26,7 @@ pub fn start(scenario: &Scenario, seed: u64) -> Recording {
         beams: beams(&scenario.sensors),
         tables: views(control.fine_set(preset), control.coarse_set()),
         frames: Vec::new(),
+        ..Recording::default()
     }
 }
 

@@ -65,7 +65,7 @@ pub struct FiredView {
 }
 
 /// One tick of the run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Frame {
     /// Time at the tick, seconds.
     pub t: f64,
@@ -96,7 +96,7 @@ pub struct Frame {
 }
 
 /// Everything about one run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Recording {
     /// Scenario's name.
     pub scenario: String,
@@ -120,4 +120,8 @@ pub struct Recording {
     pub tables: Vec<TableView>,
     /// The run, a frame a tick.
     pub frames: Vec<Frame>,
+    /// Whether the last frame is none of a tick but where the run ended after it: nothing was measured there.
+    pub ended: bool,
+    /// Place where the robot touched something at the end, m.
+    pub contact: Option<[f64; 2]>,
 }

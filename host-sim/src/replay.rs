@@ -64,6 +64,8 @@ struct Page<'a> {
     ranges: Vec<Column>,
     signals: Vec<(&'a str, Column)>,
     rules: Vec<(usize, usize, usize, Column)>,
+    ended: bool,
+    contact: Option<[f64; 2]>,
 }
 
 #[derive(Serialize)]
@@ -196,6 +198,8 @@ impl<'a> Page<'a> {
                 .columns(COARSE)
                 .map(|((table, row, col), column)| (table, row, col, column))
                 .collect(),
+            ended: rec.ended,
+            contact: rec.contact.map(|place| place.map(rounded)),
         })
     }
 }
@@ -358,6 +362,7 @@ mod tests {
             beams: Vec::new(),
             tables: Vec::new(),
             frames,
+            ..Recording::default()
         }
     }
 

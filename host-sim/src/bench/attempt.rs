@@ -202,6 +202,25 @@ pub struct Step<'a> {
     pub way: f64,
 }
 
+/// Where a run ended: up to a period after its last tick, in the middle of a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct End {
+    /// Since the start, s.
+    pub time: f64,
+    /// True pose.
+    pub pose: [f64; 3],
+    /// Pose as odometry has it.
+    pub believed: [f64; 3],
+    /// True speed and yaw rate.
+    pub twist: [f64; 2],
+    /// Distance of the body from the nearest surface, at most 1 m; at or below zero it touches.
+    pub clearance: f64,
+    /// Signed distance of the body's centre from the route, left positive, m.
+    pub cross_track: f64,
+    /// Place of the body's edge that touched something, m; none if nothing was touched.
+    pub contact: Option<[f64; 2]>,
+}
+
 /// Drives a navigator through a world. `discs` are the world's circles, binned once for all its runs.
 pub fn drive(
     arena: &Arena,
@@ -211,6 +230,18 @@ pub fn drive(
     navigator: &mut dyn Navigator,
     observe: &mut dyn FnMut(&Step<'_>),
 ) -> Outcome {
+    drive_to_end(arena, discs, setting, seed, navigator, observe).0
+}
+
+/// [`drive`], and where it ended, which no tick sees.
+pub fn drive_to_end(
+    arena: &Arena,
+    discs: &Discs,
+    setting: &Setting,
+    seed: u64,
+    navigator: &mut dyn Navigator,
+    observe: &mut dyn FnMut(&Step<'_>),
+) -> (Outcome, End) {
     let mission = setting.mission(arena);
     let ways = ways(&mission.route);
     let mut noise = stream(seed, arena.number, Purpose::Ranges);
@@ -223,76 +254,85 @@ pub fn drive(
     let mut near = Vec::new();
     let mut close = Vec::new();
     let ticks = (setting.time_limit * RATE).round() as u64;
-    let finish = |ending: Ending, time: f64, watch: &Watch| {
-        let success = ending == Ending::Reached;
-        watch.outcome(ending, time, barn(success, time, arena.route_length()))
-    };
-
     // What the body may come near to within a tick.
     let close_reach = setting.body.outer_radius() + CLEARANCE_REACH + setting.limits.speed * PERIOD;
     gather(arena, discs, vehicle.pose, 0.0, close_reach, &mut close);
     let mut clearance = body_clearance(&setting.body, vehicle.pose, &close);
     watch.min_clearance = clearance;
-    if clearance <= 0.0 {
-        return finish(Ending::Collision, 0.0, &watch);
-    }
-    for tick in 0..ticks {
-        let time = tick as f64 * PERIOD;
-        gather(arena, discs, vehicle.pose, time, ranging.reach, &mut near);
-        ranging.look(vehicle.pose, &near, &mut noise);
-        let command = setting.limits.admit(navigator.tick(&Inputs {
-            time,
-            pose: odometry.pose,
-            twist: odometry.twist,
-            ranges: &ranging.readings,
-        }));
-        let (cross_track, way) = beside(&mission.route, &ways, vehicle.pose);
-        observe(&Step {
-            time,
-            pose: vehicle.pose,
-            believed: odometry.pose,
-            twist: vehicle.twist,
-            ranges: &ranging.readings,
-            command,
-            clearance,
-            cross_track,
-            way,
-        });
-        watch.see(time, vehicle.pose, cross_track, command);
-        if watch.given_up(time) {
-            let ending = match command.mode {
-                Mode::Blocked => Ending::Blocked,
-                _ => Ending::Timeout,
-            };
-            return finish(ending, time, &watch);
+    let (ending, time) = 'run: {
+        if clearance <= 0.0 {
+            break 'run (Ending::Collision, 0.0);
         }
+        for tick in 0..ticks {
+            let time = tick as f64 * PERIOD;
+            gather(arena, discs, vehicle.pose, time, ranging.reach, &mut near);
+            ranging.look(vehicle.pose, &near, &mut noise);
+            let command = setting.limits.admit(navigator.tick(&Inputs {
+                time,
+                pose: odometry.pose,
+                twist: odometry.twist,
+                ranges: &ranging.readings,
+            }));
+            let (cross_track, way) = beside(&mission.route, &ways, vehicle.pose);
+            observe(&Step {
+                time,
+                pose: vehicle.pose,
+                believed: odometry.pose,
+                twist: vehicle.twist,
+                ranges: &ranging.readings,
+                command,
+                clearance,
+                cross_track,
+                way,
+            });
+            watch.see(time, vehicle.pose, cross_track, command);
+            if watch.given_up(time) {
+                let ending = match command.mode {
+                    Mode::Blocked => Ending::Blocked,
+                    _ => Ending::Timeout,
+                };
+                break 'run (ending, time);
+            }
 
-        vehicle.command(command);
-        gather(arena, discs, vehicle.pose, time, close_reach, &mut close);
-        let dt = PERIOD / STEPS as f64;
-        for step in 1..=STEPS {
-            let before = vehicle.twist;
-            vehicle.advance(dt);
-            let mean = [0, 1].map(|k| (before[k] + vehicle.twist[k]) / 2.0);
-            odometry.observe(vehicle.pose, vehicle.twist, mean, dt);
-            let now = time + step as f64 * dt;
-            move_along(arena, now, &mut close);
-            clearance = body_clearance(&setting.body, vehicle.pose, &close);
-            watch.min_clearance = watch.min_clearance.min(clearance);
-            if clearance <= 0.0 {
-                return finish(Ending::Collision, now, &watch);
-            }
-            let judged = match setting.arrival {
-                Arrival::True => vehicle.pose,
-                Arrival::Believed => odometry.pose,
-            };
-            let [dx, dy] = [0, 1].map(|k| judged[k] - arena.goal[k]);
-            if dx * dx + dy * dy <= arena.goal_radius * arena.goal_radius {
-                return finish(Ending::Reached, now, &watch);
+            vehicle.command(command);
+            gather(arena, discs, vehicle.pose, time, close_reach, &mut close);
+            let dt = PERIOD / STEPS as f64;
+            for step in 1..=STEPS {
+                let before = vehicle.twist;
+                vehicle.advance(dt);
+                let mean = [0, 1].map(|k| (before[k] + vehicle.twist[k]) / 2.0);
+                odometry.observe(vehicle.pose, vehicle.twist, mean, dt);
+                let now = time + step as f64 * dt;
+                move_along(arena, now, &mut close);
+                clearance = body_clearance(&setting.body, vehicle.pose, &close);
+                watch.min_clearance = watch.min_clearance.min(clearance);
+                if clearance <= 0.0 {
+                    break 'run (Ending::Collision, now);
+                }
+                let judged = match setting.arrival {
+                    Arrival::True => vehicle.pose,
+                    Arrival::Believed => odometry.pose,
+                };
+                let [dx, dy] = [0, 1].map(|k| judged[k] - arena.goal[k]);
+                if dx * dx + dy * dy <= arena.goal_radius * arena.goal_radius {
+                    break 'run (Ending::Reached, now);
+                }
             }
         }
-    }
-    finish(Ending::Timeout, setting.time_limit, &watch)
+        (Ending::Timeout, setting.time_limit)
+    };
+    let success = ending == Ending::Reached;
+    let end = End {
+        time,
+        pose: vehicle.pose,
+        believed: odometry.pose,
+        twist: vehicle.twist,
+        clearance,
+        cross_track: beside(&mission.route, &ways, vehicle.pose).0,
+        contact: touched(&setting.body, vehicle.pose, &close),
+    };
+    let outcome = watch.outcome(ending, time, barn(success, time, arena.route_length()));
+    (outcome, end)
 }
 
 /// All circles within `reach` of a pose; the moving ones come last, all of them.
@@ -330,6 +370,16 @@ pub fn body_clearance(body: &Body, pose: [f64; 3], circles: &[Circle]) -> f64 {
             least.min(body.distance(p) - c.radius)
         }
     })
+}
+
+/// Place of a body's edge that touches one of the circles, in the world, m; none if nothing does.
+fn touched(body: &Body, pose: [f64; 3], circles: &[Circle]) -> Option<[f64; 2]> {
+    let frame = BodyFrame::new(pose);
+    let depth = |c: &Circle| body.distance(frame.see(c.at)) - c.radius;
+    let deepest = circles
+        .iter()
+        .min_by(|a, b| depth(a).total_cmp(&depth(b)))?;
+    (depth(deepest) <= 0.0).then(|| frame.tell(body.nearest(frame.see(deepest.at))))
 }
 
 /// How far along a polyline its points are, m.

@@ -171,6 +171,31 @@ impl Body {
         distance * distance
     }
 
+    /// Place of the edge that is nearest to a point, both in the body's frame, m.
+    pub fn nearest(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        if let Self::Disc(radius) = self {
+            let far = libm::hypot(x, y);
+            return if far > 0.0 {
+                [x, y].map(|part| part / far * radius)
+            } else {
+                [*radius, 0.0]
+            };
+        }
+        let corners = self.corners([0.0; 3]);
+        let next = corners.iter().cycle().skip(1);
+        let places = corners.iter().zip(next).map(|(from, to)| {
+            let along = [to[0] - from[0], to[1] - from[1]];
+            let length2 = along[0] * along[0] + along[1] * along[1];
+            let share = ((x - from[0]) * along[0] + (y - from[1]) * along[1]) / length2;
+            let share = share.clamp(0.0, 1.0);
+            [0, 1].map(|k| from[k] + share * along[k])
+        });
+        let squared = |p: &[f64; 2]| (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y);
+        places
+            .min_by(|a, b| squared(a).total_cmp(&squared(b)))
+            .unwrap_or_default()
+    }
+
     /// The corners in the world's frame of a body at `pose`, counter-clockwise; of a disc as many as it takes to look round.
     pub fn corners(&self, pose: [f64; 3]) -> Vec<[f64; 2]> {
         let frame = BodyFrame::new(pose);

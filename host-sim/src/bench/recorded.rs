@@ -1,10 +1,11 @@
 //! A run again, kept tick by tick for the replay page.
 
 use super::arena::{Arena, Circle};
-use super::attempt::{Outcome, PERIOD, Setting, Step, drive};
+use super::attempt::{End, Outcome, PERIOD, Setting, Step, drive_to_end};
 use super::body::Body;
 use super::controllers::Controller;
 use super::discs::Discs;
+use super::navigator::Mode;
 use crate::recording::{Disc, Frame, Recording};
 use crate::si;
 use fuzzypilot::ports::Range;
@@ -20,7 +21,7 @@ pub fn record(
     let mut navigator = (controller.build)(&mission);
     let mut frames = Vec::new();
     let half_track = setting.body.half_width();
-    let outcome = drive(
+    let (outcome, end) = drive_to_end(
         arena,
         &Discs::new(&arena.circles),
         setting,
@@ -28,6 +29,11 @@ pub fn record(
         navigator.as_mut(),
         &mut |step| frames.push(frame(step, half_track)),
     );
+    let ended = frames.last().is_none_or(|last| last.t < end.time);
+    if ended {
+        let last = last(frames.last(), &end, half_track);
+        frames.push(last);
+    }
     let moving: Vec<Circle> = arena.movers.iter().map(|m| m.at(0.0)).collect();
     let recording = Recording {
         scenario: format!("{} in world {}", controller.name, arena.number),
@@ -54,12 +60,13 @@ pub fn record(
         beams: setting.sensors.clone(),
         tables: Vec::new(),
         frames,
+        ended,
+        contact: end.contact,
     };
     (outcome, recording)
 }
 
 fn frame(step: &Step<'_>, half_track: f64) -> Frame {
-    let [v, w] = step.twist;
     Frame {
         t: step.time,
         truth: step.pose,
@@ -69,7 +76,7 @@ fn frame(step: &Step<'_>, half_track: f64) -> Frame {
         cross_track: step.cross_track,
         clearance: step.clearance,
         twist: [step.command.speed, step.command.yaw_rate],
-        wheels: [v - w * half_track, v + w * half_track],
+        wheels: wheels(step.twist, half_track),
         ranges: step
             .ranges
             .iter()
@@ -78,8 +85,25 @@ fn frame(step: &Step<'_>, half_track: f64) -> Frame {
                 _ => None,
             })
             .collect(),
-        estimate: None,
-        signals: Vec::new(),
-        fired: Vec::new(),
+        ..Frame::default()
     }
+}
+
+/// Where the run ended, under the command of the tick before, if there was one.
+fn last(before: Option<&Frame>, end: &End, half_track: f64) -> Frame {
+    Frame {
+        t: end.time,
+        truth: end.pose,
+        believed: end.believed,
+        mode: before.map_or(Mode::Follow.name(), |frame| frame.mode),
+        cross_track: end.cross_track,
+        clearance: end.clearance,
+        twist: before.map_or([0.0; 2], |frame| frame.twist),
+        wheels: wheels(end.twist, half_track),
+        ..Frame::default()
+    }
+}
+
+fn wheels([v, w]: [f64; 2], half_track: f64) -> [f64; 2] {
+    [v - w * half_track, v + w * half_track]
 }

@@ -53,6 +53,7 @@ pub fn picture(replay: &Replay, summary: &Summary, robot_radius: f64) -> anyhow:
         beams: Vec::new(),
         tables: Vec::new(),
         frames: frames(replay),
+        ..Recording::default()
     };
     svg(
         &recording,

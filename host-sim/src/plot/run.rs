@@ -1054,6 +1054,7 @@ mod tests {
             beams: vec![beam(0.5), beam(-0.5)],
             tables: Vec::new(),
             frames,
+            ..Recording::default()
         }
     }
 

@@ -14,6 +14,9 @@ const WIDEST: f64 = 380.0;
 /// Room around everything, m.
 const ROOM: f64 = 0.3;
 
+/// Half the side of the cross on what was touched, pixels.
+const CROSS: f64 = 4.0;
+
 /// What a thumbnail shows beside the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<'a> {
@@ -89,6 +92,14 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
         outline.extend(outline.first().copied());
         let colour = if place.touched { STOP } else { INK };
         canvas.polygon(&outline, colour.mix(0.18))?;
-        canvas.line(&outline, 1.4, colour.to_rgba())
+        canvas.line(&outline, 1.4, colour.to_rgba())?;
+        if let Some([x, y]) = rec.contact {
+            let (x, y) = map.at(x, y);
+            for side in [CROSS, -CROSS] {
+                let arm = [(x - CROSS, y - side), (x + CROSS, y + side)];
+                canvas.line(&arm, 1.6, STOP.to_rgba())?;
+            }
+        }
+        Ok(())
     })
 }

@@ -5,6 +5,7 @@ mod command;
 mod contact;
 mod figures;
 mod generated;
+mod pages;
 mod promises;
 mod ranges;
 mod refused;

@@ -1,0 +1,126 @@
+//! What the report's pages show: the run's end, what moves, colours, words and figures.
+
+use host_sim::bench::arena::{Arena, Circle, Mover};
+use host_sim::bench::attempt::{Ending, Setting};
+use host_sim::bench::body::{Body, JACKAL};
+use host_sim::bench::controllers::named;
+use host_sim::bench::recorded::record;
+use host_sim::bench::sensors;
+use host_sim::recording::Recording;
+use host_sim::replay;
+use serde_json::Value;
+
+/// A straight way of 6 m past some circles.
+fn ground(circles: Vec<Circle>, movers: Vec<Mover>) -> Arena {
+    Arena {
+        number: 1,
+        circles,
+        movers,
+        start: [0.0; 3],
+        goal: [6.0, 0.0],
+        goal_radius: 0.5,
+        sealed: false,
+        route: vec![[0.0, 0.0], [6.0, 0.0]],
+        course: None,
+    }
+}
+
+/// A blind robot's run.
+fn blind(arena: &Arena, body: Body) -> (Ending, Recording) {
+    let mut setting = Setting::new(sensors::named("cone8").unwrap(), 1.0, true);
+    setting.body = body;
+    let controller = named("pure-pursuit").unwrap()[0];
+    let (outcome, recording) = record(&controller, arena, &setting, 0);
+    let last = recording.frames.last().unwrap();
+    assert!((last.t - outcome.time_s).abs() < 1e-9);
+    (outcome.ending, recording)
+}
+
+fn cylinder(at: [f64; 2]) -> Circle {
+    Circle { at, radius: 0.2 }
+}
+
+/// The recording inside a replay page.
+fn embedded(page: &str) -> Value {
+    let (_, rest) = page.split_once("id=\"recording\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+/// A page's column as numbers.
+fn column(column: &Value) -> Vec<Option<f64>> {
+    let digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let scale = column[0].as_f64().unwrap();
+    let mut text = column[1].as_str().unwrap().chars().peekable();
+    let (mut out, mut value, mut step) = (Vec::new(), 0, Some(0));
+    while let Some(&c) = text.peek() {
+        let special = "!~^_".contains(c);
+        if special || c == '*' {
+            text.next();
+        }
+        let mut times = 1;
+        if special {
+            step = None;
+        } else {
+            let (mut sum, mut shift) = (0_i64, 0);
+            loop {
+                let digit = digits.find(text.next().unwrap()).unwrap() as i64;
+                sum += (digit & 31) << shift;
+                shift += 5;
+                if digit < 32 {
+                    break;
+                }
+            }
+            let number = if sum & 1 == 1 { -(sum >> 1) } else { sum >> 1 };
+            if c == '*' {
+                times = number;
+            } else {
+                step = Some(number);
+            }
+        }
+        for _ in 0..times {
+            value += step.unwrap_or(0);
+            out.push(step.map(|_| value as f64 / scale));
+        }
+    }
+    out
+}
+
+#[test]
+fn a_collision_is_in_its_recording_and_its_place_is_marked() {
+    let cases = [
+        (JACKAL, [3.0, 0.1], [3.0 - 0.2, 0.1]),
+        // Off the middle: the corner meets the disc, not the front.
+        (JACKAL, [3.0, 0.3], [3.0 - 0.181, 0.215]),
+        (Body::Disc(0.25), [3.0, 0.0], [3.0 - 0.2, 0.0]),
+    ];
+    for (body, at, touched) in cases {
+        let (ending, recording) = blind(&ground(vec![cylinder(at)], Vec::new()), body.clone());
+        assert_eq!(ending, Ending::Collision);
+        let last = recording.frames.last().unwrap();
+        assert!(last.clearance <= 0.0, "{at:?}: {}", last.clearance);
+        let before = &recording.frames[recording.frames.len() - 2];
+        assert!(before.clearance > 0.0 && recording.ended);
+        let contact = recording.contact.unwrap();
+        assert!(
+            (contact[0] - touched[0]).abs() < 0.02 && (contact[1] - touched[1]).abs() < 0.02,
+            "{at:?}: {contact:?}"
+        );
+        let page = embedded(&replay::html(&recording).unwrap());
+        let clearance = column(&page["columns"]["clear"]);
+        assert!(clearance.last().unwrap().unwrap() <= 0.0);
+        assert!((page["contact"][0].as_f64().unwrap() - contact[0]).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn an_arrival_is_in_its_recording() {
+    let (ending, recording) = blind(&ground(Vec::new(), Vec::new()), JACKAL);
+    assert_eq!(ending, Ending::Reached);
+    let inside = |k: usize| {
+        let [x, y, _] = recording.frames[k].truth;
+        (x - 6.0).hypot(y) <= 0.5
+    };
+    let last = recording.frames.len() - 1;
+    assert!(inside(last) && !inside(last - 1));
+    assert_eq!(recording.contact, None);
+}
