@@ -62,6 +62,7 @@ pub fn record(recording: &mut Recording, step: &Step<'_>) {
         estimate,
         signals: signals(&record.trace),
         fired: fired(&record.trace),
+        ..Frame::default()
     });
 }
 
@@ -95,9 +96,7 @@ fn pause(recording: &mut Recording, gap: &Gap) {
         twist,
         wheels: gap.wheels,
         ranges: vec![None; recording.beams.len()],
-        estimate: None,
-        signals: Vec::new(),
-        fired: Vec::new(),
+        ..Frame::default()
     });
 }
 

@@ -93,6 +93,8 @@ pub struct Frame {
     pub signals: Vec<(&'static str, f64)>,
     /// Rules that fired.
     pub fired: Vec<FiredView>,
+    /// Centres of [`Recording::movers`], metres.
+    pub movers: Vec<[f64; 2]>,
 }
 
 /// Everything about one run.
@@ -110,8 +112,10 @@ pub struct Recording {
     pub robot_radius: f64,
     /// Corners of the robot's outline in its own frame, metres, counter-clockwise; none if it is a disc.
     pub outline: Vec<[f64; 2]>,
-    /// Obstacles.
+    /// Obstacles that stand still.
     pub obstacles: Vec<Disc>,
+    /// Radii of the obstacles that move, metres; where they are is in the frames.
+    pub movers: Vec<f64>,
     /// Path as polylines, x, y in metres, dense enough to draw (one polyline a stretch without gaps).
     pub path: Vec<Vec<[f64; 2]>>,
     /// Sensors.

@@ -54,6 +54,8 @@ struct Page<'a> {
     robot_radius: f64,
     outline: &'a [[f64; 2]],
     obstacles: Vec<(&'a str, f64, f64, f64)>,
+    /// Radius, and x and y over the ticks.
+    movers: Vec<(f64, [Column; 2])>,
     path: Vec<[Column; 2]>,
     beams: Vec<[f64; 5]>,
     tables: &'a [TableView],
@@ -148,6 +150,18 @@ impl<'a> Page<'a> {
                         rounded(d.y),
                         rounded(d.radius),
                     )
+                })
+                .collect(),
+            movers: rec
+                .movers
+                .iter()
+                .enumerate()
+                .map(|(mover, radius)| {
+                    let along = |k: usize| {
+                        let at = |f: &Frame| f.movers.get(mover).map(|place| place[k]);
+                        Column::new(COARSE, frames.iter().map(at))
+                    };
+                    (rounded(*radius), [along(0), along(1)])
                 })
                 .collect(),
             path: rec
@@ -342,10 +356,7 @@ mod tests {
             clearance: f64::INFINITY,
             twist: [1.0, 0.0],
             wheels: [1.0, 1.0],
-            ranges: Vec::new(),
-            estimate: None,
-            signals: Vec::new(),
-            fired: Vec::new(),
+            ..Frame::default()
         }
     }
 

@@ -1,6 +1,6 @@
 //! A run again, kept tick by tick for the replay page.
 
-use super::arena::{Arena, Circle};
+use super::arena::Arena;
 use super::attempt::{End, Outcome, PERIOD, Setting, Step, drive_to_end};
 use super::body::Body;
 use super::controllers::Controller;
@@ -10,7 +10,7 @@ use crate::recording::{Disc, Frame, Recording};
 use crate::si;
 use fuzzypilot::ports::Range;
 
-/// Runs a navigator through a world once more. What moves is shown where it was at the start.
+/// Runs a navigator through a world once more.
 pub fn record(
     controller: &Controller,
     arena: &Arena,
@@ -27,14 +27,20 @@ pub fn record(
         setting,
         seed,
         navigator.as_mut(),
-        &mut |step| frames.push(frame(step, half_track)),
+        &mut |step| {
+            frames.push(Frame {
+                movers: moving(arena, step.time),
+                ..frame(step, half_track)
+            });
+        },
     );
     let ended = frames.last().is_none_or(|last| last.t < end.time);
     if ended {
-        let last = last(frames.last(), &end, half_track);
-        frames.push(last);
+        frames.push(Frame {
+            movers: moving(arena, end.time),
+            ..last(frames.last(), &end, half_track)
+        });
     }
-    let moving: Vec<Circle> = arena.movers.iter().map(|m| m.at(0.0)).collect();
     let recording = Recording {
         scenario: format!("{} in world {}", controller.name, arena.number),
         variant: format!("{:?} after {:.1} s", outcome.ending, outcome.time_s),
@@ -48,7 +54,6 @@ pub fn record(
         obstacles: arena
             .circles
             .iter()
-            .chain(&moving)
             .map(|c| Disc {
                 name: String::new(),
                 x: c.at[0],
@@ -56,6 +61,7 @@ pub fn record(
                 radius: c.radius,
             })
             .collect(),
+        movers: arena.movers.iter().map(|m| m.radius).collect(),
         path: vec![mission.route],
         beams: setting.sensors.clone(),
         tables: Vec::new(),
@@ -102,6 +108,10 @@ fn last(before: Option<&Frame>, end: &End, half_track: f64) -> Frame {
         wheels: wheels(end.twist, half_track),
         ..Frame::default()
     }
+}
+
+fn moving(arena: &Arena, time: f64) -> Vec<[f64; 2]> {
+    arena.movers.iter().map(|m| m.at(time).at).collect()
 }
 
 fn wheels([v, w]: [f64; 2], half_track: f64) -> [f64; 2] {

@@ -79,10 +79,7 @@ fn frames(replay: &Replay) -> Vec<Frame> {
             si::from_rate(decision.record.twist.angular),
         ],
         wheels: [0.0; 2],
-        ranges: Vec::new(),
-        estimate: None,
-        signals: Vec::new(),
-        fired: Vec::new(),
+        ..Frame::default()
     };
     replay.decisions.iter().map(frame).collect()
 }

@@ -974,6 +974,7 @@ mod tests {
         estimate: None,
         signals: Vec::new(),
         fired: Vec::new(),
+        movers: Vec::new(),
     };
 
     /// An S of two half circles, an obstacle on the first that is driven around, two beside the second.

@@ -36,14 +36,18 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
     let frames: Vec<&Frame> = rec.frames.iter().collect();
     ensure!(!frames.is_empty(), "a run without a frame");
     let [goal_x, goal_y, goal_radius] = place.goal;
+    // What moves is where it was when the run ended.
+    let places = frames.last().map_or(&[][..], |last| &last.movers);
+    let moved = || {
+        let of = |(place, radius): (&[f64; 2], &f64)| (place[0], place[1], *radius);
+        places.iter().zip(&rec.movers).map(of)
+    };
     let along = |k: usize| {
         let track = frames.iter().map(|f| f.truth[k]);
         let route = rec.path.iter().flatten().map(|p| p[k]);
         let outline = place.outline.iter().map(|p| p[k]);
-        let discs = drawable(rec).flat_map(|d| {
-            let middle = [d.x, d.y][k];
-            [middle - d.radius, middle + d.radius]
-        });
+        let discs = drawable(rec).map(|d| (d.x, d.y, d.radius)).chain(moved());
+        let discs = discs.flat_map(|(x, y, radius)| [[x, y][k] - radius, [x, y][k] + radius]);
         let goal = [goal_x, goal_y][k];
         let goal = [goal - goal_radius, goal + goal_radius];
         let (low, high) = extent(track.chain(route).chain(outline).chain(discs).chain(goal))
@@ -77,6 +81,10 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
                 disc.radius * scale,
                 OBSTACLE.to_rgba(),
             )?;
+        }
+        for (x, y, radius) in moved() {
+            canvas.disc(map.at(x, y), radius * scale, OBSTACLE.mix(0.45))?;
+            canvas.ring(map.at(x, y), radius * scale, 1.0, OBSTACLE.to_rgba())?;
         }
         for route in &rec.path {
             let points: Vec<Point> = route.iter().map(|p| map.at(p[0], p[1])).collect();

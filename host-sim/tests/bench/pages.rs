@@ -6,6 +6,7 @@ use host_sim::bench::body::{Body, JACKAL};
 use host_sim::bench::controllers::named;
 use host_sim::bench::recorded::record;
 use host_sim::bench::sensors;
+use host_sim::plot::thumbnail::{Place, thumbnail_svg};
 use host_sim::recording::Recording;
 use host_sim::replay;
 use serde_json::Value;
@@ -123,4 +124,44 @@ fn an_arrival_is_in_its_recording() {
     let last = recording.frames.len() - 1;
     assert!(inside(last) && !inside(last - 1));
     assert_eq!(recording.contact, None);
+}
+
+#[test]
+fn what_moves_moves_in_the_recording() {
+    let mover = Mover {
+        from: [2.0, 1.5],
+        to: [2.0, 3.5],
+        speed: 0.5,
+        radius: 0.25,
+    };
+    let (_, recording) = blind(&ground(Vec::new(), vec![mover]), JACKAL);
+    assert!(recording.obstacles.is_empty());
+    let page = embedded(&replay::html(&recording).unwrap());
+    assert_eq!(page["movers"][0][0], 0.25);
+    let times = column(&page["columns"]["t"]);
+    let heights = column(&page["movers"][0][1][1]);
+    assert_eq!(heights.len(), recording.frames.len());
+    for (time, height) in times.iter().zip(&heights) {
+        let (time, height) = (time.unwrap(), height.unwrap());
+        // To and fro in 8 s.
+        let wanted = 1.5 + 2.0 - (0.5 * time.rem_euclid(8.0) - 2.0).abs();
+        assert!((height - wanted).abs() < 2e-3, "{time} s: {height}");
+    }
+    // The picture has it where it was at the end.
+    let thumbnail = |recording: &Recording| {
+        let place = Place {
+            goal: [6.0, 0.0, 0.5],
+            outline: &[],
+            touched: false,
+        };
+        thumbnail_svg(recording, &place).unwrap()
+    };
+    let last = recording.frames.last().unwrap().movers.clone();
+    let mut earlier = recording.clone();
+    for frame in earlier.frames.iter_mut().rev().skip(1) {
+        frame.movers = last.clone();
+    }
+    assert_eq!(thumbnail(&earlier), thumbnail(&recording));
+    earlier.frames.last_mut().unwrap().movers = vec![[2.0, 1.5]];
+    assert_ne!(thumbnail(&earlier), thumbnail(&recording));
 }
