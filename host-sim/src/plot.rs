@@ -7,6 +7,7 @@
 pub mod axis;
 pub mod curve;
 pub mod membership;
+pub mod palette;
 pub mod raster;
 pub mod run;
 pub mod surface;

@@ -9,10 +9,14 @@ use std::hash::Hash;
 use anyhow::{Context, Result, ensure};
 use serde::Serialize;
 
+use crate::plot::palette;
 use crate::recording::{Frame, Recording, TableView};
 
 const TEMPLATE: &str = include_str!("../assets/replay.html");
 const PLACEHOLDER: &str = "__RECORDING__";
+
+/// Where the page's style sheet takes the modes' colours, and whether those of a dark ground.
+const PALETTES: [(&str, bool); 2] = [("/* modes */", false), ("/* modes, dark */", true)];
 
 /// Steps per unit for poses, times, speeds and signals.
 const FINE: f64 = 1e4;
@@ -31,9 +35,13 @@ pub fn html(rec: &Recording) -> Result<String> {
     let (head, tail) = TEMPLATE
         .split_once(PLACEHOLDER)
         .context("the replay template has no place for the recording")?;
+    let mut head = head.to_owned();
+    for (place, dark) in PALETTES {
+        head = head.replace(place, &palette::css(dark));
+    }
     let json = script_safe(&serde_json::to_string(&Page::new(rec)?).context("recording as JSON")?);
     let mut page = String::with_capacity(head.len() + json.len() + tail.len());
-    page.push_str(head);
+    page.push_str(&head);
     page.push_str(&json);
     page.push_str(tail);
     Ok(page)

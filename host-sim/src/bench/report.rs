@@ -5,7 +5,7 @@ use super::arena::Arena;
 use super::attempt::Ending;
 use super::body::Body;
 use super::results::{Conditions, Figures, Results};
-use crate::plot::run::colours;
+use crate::plot::palette::{MODES, hex};
 use crate::plot::thumbnail::{Place, thumbnail_svg};
 use crate::recording::Recording;
 use std::fmt::Write;
@@ -194,8 +194,13 @@ fn beside(page: &mut String, result: &Results) {
 /// What the pictures' colours mean.
 fn legend(page: &mut String) {
     page.push_str("<p class=\"legend\">");
-    for (mode, colour) in colours().filter(|(mode, _)| *mode != "stop") {
-        let _ = write!(page, "<i style=\"background:{colour}\"></i>{mode}");
+    for hue in MODES.iter().filter(|hue| hue.mode != "stop") {
+        let _ = write!(
+            page,
+            "<i style=\"background:{}\"></i>{}",
+            hex(hue.light),
+            hue.mode
+        );
     }
     page.push_str(
         "<i class=\"route\"></i>given route, and the goal's circle. A picture opens the run's replay.</p>\n",

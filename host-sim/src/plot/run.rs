@@ -6,6 +6,7 @@ use std::ops::Range;
 use anyhow::{Result, ensure};
 use plotters::style::{Color, RGBAColor, RGBColor};
 
+use super::palette::{GRAVEST, Hue, MODES, OTHER, STOP, known};
 use super::{
     CENTRED, Canvas, FRAME, FROM_LEFT, INK, MUTED, Panel, Placer, Point, Rect, WIDTH, document,
     extent, fitted, nice_step, text_width, tick_text, ticks, ticks_by,
@@ -18,24 +19,6 @@ const MAP_TOP: f64 = 104.0;
 const STRIP_HEIGHT: f64 = 98.0;
 const STRIP_GAP: f64 = 16.0;
 
-// Okabe and Ito's blue and orange, and a red dark enough to differ from the orange in lightness as well.
-const FOLLOW: RGBColor = RGBColor(0x00, 0x72, 0xB2);
-const AVOID: RGBColor = RGBColor(0xE6, 0x9F, 0x00);
-const ESCAPE: RGBColor = RGBColor(0xCC, 0x79, 0xA7);
-pub(super) const STOP: RGBColor = RGBColor(0xA8, 0x10, 0x24);
-const ARRIVED: RGBColor = RGBColor(0x56, 0xB4, 0xE9);
-const OTHER: RGBColor = RGBColor(0x77, 0x77, 0x77);
-
-/// Modes with their colour, and how much each matters where several share a pixel.
-const MODES: [(&str, RGBColor, u8); 6] = [
-    ("follow", FOLLOW, 0),
-    ("avoid", AVOID, 2),
-    ("escape", ESCAPE, 3),
-    ("stop", STOP, 4),
-    ("blocked", STOP, 4),
-    ("arrived", ARRIVED, 1),
-];
-const GRAVEST: u8 = 4;
 const BEAM: RGBColor = RGBColor(0x00, 0x9E, 0x73);
 pub(super) const OBSTACLE: RGBColor = RGBColor(0x59, 0x61, 0x6B);
 pub(super) const PATH: RGBColor = RGBColor(0x9A, 0xA0, 0xA6);
@@ -105,25 +88,13 @@ pub fn svg(rec: &Recording, extras: &Extras<'_>) -> Result<String> {
     })
 }
 
-fn known(mode: &str) -> Option<&'static (&'static str, RGBColor, u8)> {
-    MODES.iter().find(|(name, ..)| *name == mode)
-}
-
-/// The modes that have a colour of their own, with it as HTML has it.
-pub fn colours() -> impl Iterator<Item = (&'static str, String)> {
-    let spelt = |c: RGBColor| format!("#{:02x}{:02x}{:02x}", c.0, c.1, c.2);
-    MODES
-        .iter()
-        .map(move |(name, colour, _)| (*name, spelt(*colour)))
-}
-
 fn mode_colour(mode: &str) -> RGBColor {
-    known(mode).map_or(OTHER, |(_, colour, _)| *colour)
+    known(mode).unwrap_or(&OTHER).light
 }
 
 /// How much a mode matters where several share a pixel.
 fn rank(mode: &str) -> u8 {
-    known(mode).map_or(1, |(_, _, rank)| *rank)
+    known(mode).unwrap_or(&OTHER).rank
 }
 
 /// Whether there is a path that a cross-track error was measured from.
@@ -183,7 +154,7 @@ fn legend(
             canvas.dashes(&[(x, y), (x + 24.0, y)], (6.0, 4.0), 1.3, PATH.to_rgba())
         })?;
     }
-    for (mode, ..) in MODES {
+    for Hue { mode, .. } in MODES {
         if frames.iter().any(|frame| frame.mode == mode) {
             entry(mode, &|x| {
                 canvas.line(&[(x, y), (x + 24.0, y)], 3.0, mode_colour(mode).to_rgba())
@@ -192,7 +163,7 @@ fn legend(
     }
     if frames.iter().any(|frame| known(frame.mode).is_none()) {
         entry("other mode", &|x| {
-            canvas.line(&[(x, y), (x + 24.0, y)], 3.0, OTHER.to_rgba())
+            canvas.line(&[(x, y), (x + 24.0, y)], 3.0, OTHER.light.to_rgba())
         })?;
     }
     if !rec.obstacles.is_empty() {

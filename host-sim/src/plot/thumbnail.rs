@@ -1,7 +1,8 @@
 //! A run in little: the world, the route, the way in the modes' colours and the outline where it ended. For pages with
 //! many runs.
 
-use super::run::{OBSTACLE, PATH, STOP, drawable, thinned, trajectory};
+use super::palette::STOP;
+use super::run::{OBSTACLE, PATH, drawable, thinned, trajectory};
 use super::{INK, Panel, Placer, Point, Rect, document, extent};
 use crate::recording::{Frame, Recording};
 use anyhow::{Result, ensure};

@@ -6,6 +6,7 @@ use host_sim::bench::body::{Body, JACKAL};
 use host_sim::bench::controllers::named;
 use host_sim::bench::recorded::record;
 use host_sim::bench::sensors;
+use host_sim::plot::run::run_svg;
 use host_sim::plot::thumbnail::{Place, thumbnail_svg};
 use host_sim::recording::Recording;
 use host_sim::replay;
@@ -164,4 +165,31 @@ fn what_moves_moves_in_the_recording() {
     assert_eq!(thumbnail(&earlier), thumbnail(&recording));
     earlier.frames.last_mut().unwrap().movers = vec![[2.0, 1.5]];
     assert_ne!(thumbnail(&earlier), thumbnail(&recording));
+}
+
+#[test]
+fn a_mode_has_one_colour_in_every_picture() {
+    let (_, mut recording) = blind(&ground(Vec::new(), Vec::new()), JACKAL);
+    let modes = ["follow", "avoid", "escape", "stop", "blocked", "arrived"];
+    let count = recording.frames.len();
+    for (k, frame) in recording.frames.iter_mut().enumerate() {
+        frame.mode = modes[k * modes.len() / count];
+    }
+    let figure = run_svg(&recording).unwrap().to_lowercase();
+    let page = replay::html(&recording).unwrap();
+    for mode in modes {
+        let colours: Vec<&str> = page
+            .split(&format!("--mode-{mode}: "))
+            .skip(1)
+            .map(|rest| rest.split_once(';').unwrap().0)
+            .collect();
+        let [light, dark] = colours[..] else {
+            panic!("{mode}: {colours:?}");
+        };
+        assert!(light != dark && dark.len() == 7);
+        // The line of the mode, in the legend if nowhere else.
+        let stroke = format!("stroke=\"{light}\"");
+        assert!(figure.contains(&stroke), "{mode}: {light}");
+    }
+    assert!(!page.contains("/* modes"));
 }
