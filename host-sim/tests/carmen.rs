@@ -75,6 +75,10 @@ fn summary(dir: &Path) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
+fn drawn(dir: &Path) -> String {
+    fs::read_to_string(dir.join("decisions.svg")).unwrap()
+}
+
 fn gzip(text: &str) -> Vec<u8> {
     let mut packed = GzEncoder::new(Vec::new(), Compression::default());
     packed.write_all(text.as_bytes()).unwrap();
@@ -182,7 +186,42 @@ fn without_times_it_goes_at_a_pace() {
         let figures = summary(&dir.path().join("o"));
         assert_eq!(figures["clock"], "pace");
         assert!((figures["duration_s"].as_f64().unwrap() - lasts).abs() < 1e-6);
+        assert!(drawn(&dir.path().join("o")).contains("driven at --pace"));
     }
+    fs::write(dir.path().join("timed.log"), corridor(3.0, true)).unwrap();
+    sim(dir.path())
+        .args(["timed.log", "--out", "o"])
+        .assert()
+        .success();
+    assert!(!drawn(&dir.path().join("o")).contains("--pace"));
+}
+
+#[test]
+fn the_picture_says_the_way_that_the_summary_has() {
+    let dir = tempdir().unwrap();
+    // To and fro within a tick, which sees the corners of none of it.
+    let mut text = String::new();
+    for k in 0..=300 {
+        let (x, y, t) = (
+            f64::from(k) * 0.01,
+            0.02 * f64::from(k % 2),
+            f64::from(k) * 0.02,
+        );
+        let _ = writeln!(
+            text,
+            "FLASER {BEAMS} {} {x} {y} 0 {x} {y} 0 {t} host {t}",
+            words(&ranges(x))
+        );
+    }
+    fs::write(dir.path().join("hall.log"), text).unwrap();
+    sim(dir.path())
+        .args(["hall.log", "--out", "o"])
+        .assert()
+        .success();
+    let out = dir.path().join("o");
+    let driven = summary(&out)["driven_m"].as_f64().unwrap();
+    assert!((driven - 300.0 * 0.01_f64.hypot(0.02)).abs() < 1e-6);
+    assert!(drawn(&out).contains(&format!("{driven:.1} m driven")));
 }
 
 #[test]

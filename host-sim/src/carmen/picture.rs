@@ -3,6 +3,7 @@
 
 use super::replay::{PERIOD, Replay, name};
 use super::summary::{Summary, clearance};
+use super::timeline::Clock;
 use crate::bench::body::BodyFrame;
 use crate::bench::vehicle::along;
 use crate::plot::run::{Extras, svg};
@@ -58,9 +59,13 @@ pub fn picture(replay: &Replay, summary: &Summary, robot_radius: f64) -> anyhow:
     svg(
         &recording,
         &Extras {
-            facts: Some(format!("{} scans", summary.scans)),
+            facts: Some(match summary.clock {
+                Clock::Pace => format!("{} scans, no times: driven at --pace", summary.scans),
+                Clock::Messages | Clock::Logger => format!("{} scans", summary.scans),
+            }),
             obstacles: "remembered point",
             arrows: &arrows(replay),
+            driven: Some(summary.driven_m),
         },
     )
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use anyhow::{Result, ensure};
-use plotters::style::{Color, RGBAColor, RGBColor};
+use plotters::style::{Color, RGBColor};
 
 use super::palette::{GRAVEST, Hue, MODES, OTHER, STOP, known};
 use super::{
@@ -27,6 +27,10 @@ pub(super) const PATH: RGBColor = RGBColor(0x9A, 0xA0, 0xA6);
 const MOST_VERTICES: usize = 4000;
 const MOST_MOMENTS: usize = 6;
 
+/// Height of the bar over a strip that says the mode, pixels, and how much of its colour the strip below takes.
+const BAR: f64 = 5.0;
+const TINT: f64 = 0.07;
+
 /// Least radius of an obstacle, pixels.
 const LEAST_RADIUS: f64 = 0.9;
 
@@ -48,6 +52,8 @@ pub struct Extras<'a> {
     pub obstacles: &'a str,
     /// Lines on the map that end in a point: x, y in metres.
     pub arrows: &'a [Vec<[f64; 2]>],
+    /// Way driven where it is known better than from the frames, m.
+    pub driven: Option<f64>,
 }
 
 impl Default for Extras<'_> {
@@ -56,6 +62,7 @@ impl Default for Extras<'_> {
             facts: None,
             obstacles: "obstacle",
             arrows: &[],
+            driven: None,
         }
     }
 }
@@ -117,7 +124,7 @@ fn heading(canvas: &Canvas, rec: &Recording, frames: &[&Frame], extras: &Extras<
         })
         .sum();
     // An empty sum is a negative zero.
-    let driven = driven.abs();
+    let driven = extras.driven.unwrap_or(driven.abs());
     let lasted = frames[frames.len() - 1].t - frames[0].t;
     let first = match &extras.facts {
         Some(facts) => facts.clone(),
@@ -778,20 +785,21 @@ fn draw_strips(
             x_numbers: below,
         };
         for (from, to, mode) in &bands {
-            let tint: RGBAColor = mode_colour(mode).mix(match rank(mode) {
-                0 => 0.07,
-                1 => 0.10,
-                _ => 0.22,
-            });
             // A lone tick of a mode deserves to be seen, the last one of a run above all.
             let right = panel.at(*to, 0.0).0;
             let left = panel.at(*from, 0.0).0.min(right - 2.0).max(panel.rect.left);
-            let rect = Rect {
+            // A pale tint of one colour may look like another: what says the mode is a bar in the legend's own.
+            let tint = Rect {
                 left,
                 right,
                 ..panel.rect
             };
-            canvas.block(&rect, tint)?;
+            canvas.block(&tint, mode_colour(mode).mix(TINT))?;
+            let bar = Rect {
+                bottom: panel.rect.top + BAR,
+                ..tint
+            };
+            canvas.block(&bar, mode_colour(mode).to_rgba())?;
         }
         panel.axes(canvas, true)?;
         if panel.y_ticks.contains(&0.0) {
@@ -1070,6 +1078,24 @@ mod tests {
             assert!(svg.contains(text), "{text}");
         }
         assert!(svg.contains("#E69F00") && svg.contains("#0072B2"));
+    }
+
+    #[test]
+    fn strips_say_the_mode_in_the_legend_s_colour() {
+        let mut rec = winding(200);
+        for frame in &mut rec.frames[100..150] {
+            frame.mode = "blocked";
+        }
+        let svg = drawn(&rec);
+        // A bar a strip, and no paler one of which it could be another mode's.
+        let bars = svg
+            .split("<rect ")
+            .filter(|rest| {
+                let own = rest.split_once('>').unwrap().0;
+                own.contains("fill=\"#A81024\"") && own.contains("opacity=\"1\"")
+            })
+            .count();
+        assert_eq!(bars, 4);
     }
 
     #[test]
