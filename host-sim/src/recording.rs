@@ -128,4 +128,16 @@ pub struct Recording {
     pub ended: bool,
     /// Place where the robot touched something at the end, m.
     pub contact: Option<[f64; 2]>,
+    /// Centre and radius of the goal, m, where there is one.
+    pub goal: Option<[f64; 3]>,
+    /// Whether the path is but the straight line to the goal, which nobody is to keep to.
+    pub straight: bool,
+    /// Clearances are known up to this, m; all that are larger are said as this.
+    pub clearance_cap: Option<f64>,
+    /// The sensor that hears nothing.
+    pub dead: Option<usize>,
+    /// What else to say about the run: a name and its value each.
+    pub facts: Vec<(String, String)>,
+    /// Where a page that shows the run leads back to.
+    pub back: Option<String>,
 }

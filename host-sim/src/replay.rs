@@ -76,6 +76,12 @@ struct Page<'a> {
     rules: Vec<(usize, usize, usize, Column)>,
     ended: bool,
     contact: Option<[f64; 2]>,
+    goal: Option<[f64; 3]>,
+    straight: bool,
+    clearance_cap: Option<f64>,
+    dead: Option<usize>,
+    facts: &'a [(String, String)],
+    back: Option<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -222,6 +228,12 @@ impl<'a> Page<'a> {
                 .collect(),
             ended: rec.ended,
             contact: rec.contact.map(|place| place.map(rounded)),
+            goal: rec.goal.map(|goal| goal.map(rounded)),
+            straight: rec.straight,
+            clearance_cap: rec.clearance_cap,
+            dead: rec.dead,
+            facts: &rec.facts,
+            back: rec.back.as_deref(),
         })
     }
 }

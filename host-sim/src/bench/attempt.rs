@@ -32,7 +32,7 @@ pub const STALL: f64 = 5.0;
 const PATIENCE: f64 = 10.0;
 
 /// How far around the body clearances are measured, m. What is further away counts as this far.
-const CLEARANCE_REACH: f64 = 1.0;
+pub const CLEARANCE_REACH: f64 = 1.0;
 
 /// Whose pose decides whether the goal is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,6 +152,18 @@ pub enum Ending {
     Timeout,
     /// The navigator reported that there is no way, and kept to it.
     Blocked,
+}
+
+impl Ending {
+    /// In words, the same ones everywhere.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Reached => "reached",
+            Self::Collision => "collision",
+            Self::Timeout => "out of time",
+            Self::Blocked => "blocked",
+        }
+    }
 }
 
 /// What came out of a run.

@@ -1,7 +1,7 @@
 //! A run again, kept tick by tick for the replay page.
 
 use super::arena::Arena;
-use super::attempt::{End, Outcome, PERIOD, Setting, Step, drive_to_end};
+use super::attempt::{CLEARANCE_REACH, End, Outcome, PERIOD, Setting, Step, drive_to_end};
 use super::body::Body;
 use super::controllers::Controller;
 use super::discs::Discs;
@@ -43,7 +43,7 @@ pub fn record(
     }
     let recording = Recording {
         scenario: format!("{} in world {}", controller.name, arena.number),
-        variant: format!("{:?} after {:.1} s", outcome.ending, outcome.time_s),
+        variant: format!("{} at {:.1} s", outcome.ending.words(), outcome.time_s),
         seed,
         period: PERIOD,
         robot_radius: setting.body.outer_radius(),
@@ -68,6 +68,11 @@ pub fn record(
         frames,
         ended,
         contact: end.contact,
+        goal: Some([arena.goal[0], arena.goal[1], arena.goal_radius]),
+        straight: !setting.planned,
+        clearance_cap: Some(CLEARANCE_REACH),
+        dead: setting.dead.sensor(seed, setting.sensors.len()),
+        ..Recording::default()
     };
     (outcome, recording)
 }

@@ -29,6 +29,22 @@ pub struct Failure {
     pub replay: String,
 }
 
+/// Says on a run's replay, which lies in a folder beside the page, what was asked for.
+pub fn explain(recording: &mut Recording, c: &Conditions) {
+    let fact = |name: &str, value: String| (name.to_owned(), value);
+    recording.facts = vec![
+        fact("task", c.task.clone()),
+        fact("sensors", c.sensors.clone()),
+        fact("trouble", c.disturbance.clone()),
+    ];
+    recording.facts.extend(
+        recording
+            .dead
+            .map(|sensor| fact("dead sensor", sensor.to_string())),
+    );
+    recording.back = Some("../index.html".to_owned());
+}
+
 /// A small picture of a run, SVG.
 ///
 /// # Errors
@@ -84,7 +100,7 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> Strin
                 f.picture,
                 f.world,
                 f.seed,
-                words(f.ending),
+                f.ending.words(),
                 f.time
             );
         }
@@ -264,15 +280,6 @@ th{font-weight:600;color:#5f666e;vertical-align:bottom}td:first-child,th:first-c
 .legend i.route{height:0;background:none;border-top:2px dashed #9aa0a6}
 </style></head><body><main><h1>Navigation bench</h1>
 ";
-
-fn words(ending: Ending) -> &'static str {
-    match ending {
-        Ending::Reached => "reached",
-        Ending::Collision => "collision",
-        Ending::Timeout => "out of time",
-        Ending::Blocked => "blocked",
-    }
-}
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")

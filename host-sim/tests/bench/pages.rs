@@ -1,5 +1,6 @@
 //! What the report's pages show: the run's end, what moves, colours, words and figures.
 
+use super::command::sim;
 use host_sim::bench::arena::{Arena, Circle, Mover};
 use host_sim::bench::attempt::{Ending, Setting};
 use host_sim::bench::body::{Body, JACKAL};
@@ -10,7 +11,9 @@ use host_sim::plot::run::run_svg;
 use host_sim::plot::thumbnail::{Place, thumbnail_svg};
 use host_sim::recording::Recording;
 use host_sim::replay;
-use serde_json::Value;
+use serde_json::{Value, json};
+use std::fs;
+use tempfile::tempdir;
 
 /// A straight way of 6 m past some circles.
 fn ground(circles: Vec<Circle>, movers: Vec<Mover>) -> Arena {
@@ -40,6 +43,25 @@ fn blind(arena: &Arena, body: Body) -> (Ending, Recording) {
 
 fn cylinder(at: [f64; 2]) -> Circle {
     Circle { at, radius: 0.2 }
+}
+
+/// A page and the recordings of the replays that it opens, by file.
+fn report(arguments: &[&str]) -> (String, Vec<(String, Value)>) {
+    let dir = tempdir().unwrap();
+    sim(dir.path())
+        .args(["bench", "--report", "r"])
+        .args(arguments)
+        .assert()
+        .success();
+    let read = |name: &str| fs::read_to_string(dir.path().join("r").join(name)).unwrap();
+    let page = read("index.html");
+    let replays = page
+        .split("href=\"runs/")
+        .skip(1)
+        .map(|rest| format!("runs/{}", rest.split_once('"').unwrap().0))
+        .map(|file| (file.clone(), embedded(&read(&file))))
+        .collect();
+    (page, replays)
 }
 
 /// The recording inside a replay page.
@@ -192,4 +214,41 @@ fn a_mode_has_one_colour_in_every_picture() {
         assert!(figure.contains(&stroke), "{mode}: {light}");
     }
     assert!(!page.contains("/* modes"));
+}
+
+#[test]
+fn a_replay_says_what_was_asked_for_and_leads_back() {
+    let forest = ["--worlds", "generated:forest", "--numbers", "0-3"];
+    let robot = [
+        "--controllers",
+        "rpp",
+        "--dead",
+        "3",
+        "--harsh",
+        "--time-limit",
+        "4",
+    ];
+    for (task, straight) in [("goal", true), ("path", false)] {
+        let (page, replays) = report(&[&forest[..], &robot, &["--task", task]].concat());
+        assert!(!replays.is_empty(), "{task}: all arrived");
+        for (file, replay) in replays {
+            let [world, _] = file[9..].split('-').collect::<Vec<_>>()[..] else {
+                panic!("{file}");
+            };
+            assert_eq!(replay["straight"], straight);
+            assert_eq!(replay["goal"][2], 0.5);
+            assert_eq!(replay["clearance_cap"], 1.0);
+            assert_eq!(replay["back"], "../index.html");
+            assert_eq!(replay["dead"], 3);
+            let facts = replay["facts"].as_array().unwrap();
+            for fact in [["task", task], ["sensors", "cone16"], ["dead sensor", "3"]] {
+                assert!(facts.contains(&json!(fact)), "{fact:?}: {facts:?}");
+            }
+            let words = replay["variant"].as_str().unwrap();
+            assert!(
+                page.contains(&format!("world {world}, seed 0: {words}")),
+                "{words}"
+            );
+        }
+    }
 }

@@ -6,7 +6,7 @@ use host_sim::bench::attempt::Ending;
 use host_sim::bench::campaign::Campaign;
 use host_sim::bench::controllers::Controller;
 use host_sim::bench::recorded::record;
-use host_sim::bench::report::{Failure, page, per_world, picture};
+use host_sim::bench::report::{Failure, explain, page, per_world, picture};
 use host_sim::bench::results::Results;
 use host_sim::replay;
 use std::path::Path;
@@ -44,7 +44,9 @@ pub fn write(
                 left_out += 1;
                 continue;
             }
-            let (outcome, recording) = record(controller, arena, &campaign.setting, attempt.seed);
+            let (outcome, mut recording) =
+                record(controller, arena, &campaign.setting, attempt.seed);
+            explain(&mut recording, &result.conditions);
             let name = format!(
                 "runs/{}-{}-{}.html",
                 controller.name, arena.number, attempt.seed

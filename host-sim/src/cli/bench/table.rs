@@ -31,7 +31,7 @@ fn of(results: &[Results]) -> Table {
         "runs",
         "success %",
         "collision %",
-        "time-out %",
+        "out of time %",
         "blocked %",
         "out or blocked %",
         "score",
