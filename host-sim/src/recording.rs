@@ -64,6 +64,27 @@ pub struct FiredView {
     pub degree: f64,
 }
 
+/// What a navigator thinks in a tick.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct NavigatorView {
+    /// Points that it remembers, in the frame of the robot as it believes it, metres.
+    pub points: Vec<[f64; 2]>,
+    /// Heading that it chose, radians from straight ahead; none if none is free.
+    pub heading: Option<f64>,
+    /// Direction that it wants, radians from straight ahead.
+    pub direction: f64,
+    /// Twist that it wants, before its barrier: metres per second, radians per second.
+    pub wanted: [f64; 2],
+    /// Whether the barrier slowed that.
+    pub slowed: bool,
+    /// Whether the brake gate changed it.
+    pub gated: bool,
+    /// Whether not even braking in full stays clear.
+    pub trapped: bool,
+    /// Sensors that it takes for dead.
+    pub dead: Vec<usize>,
+}
+
 /// One tick of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Frame {
@@ -95,6 +116,8 @@ pub struct Frame {
     pub fired: Vec<FiredView>,
     /// Centres of [`Recording::movers`], metres.
     pub movers: Vec<[f64; 2]>,
+    /// What the navigator thinks, where it tells.
+    pub view: Option<NavigatorView>,
 }
 
 /// Everything about one run.

@@ -10,7 +10,7 @@ use anyhow::{Context, Result, ensure};
 use serde::Serialize;
 
 use crate::plot::palette;
-use crate::recording::{Frame, Recording, TableView};
+use crate::recording::{Frame, NavigatorView, Recording, TableView};
 
 const TEMPLATE: &str = include_str!("../assets/replay.html");
 const PLACEHOLDER: &str = "__RECORDING__";
@@ -74,6 +74,7 @@ struct Page<'a> {
     ranges: Vec<Column>,
     signals: Vec<(&'a str, Column)>,
     rules: Vec<(usize, usize, usize, Column)>,
+    navigator: Option<Thoughts>,
     ended: bool,
     contact: Option<[f64; 2]>,
     goal: Option<[f64; 3]>,
@@ -226,6 +227,7 @@ impl<'a> Page<'a> {
                 .columns(COARSE)
                 .map(|((table, row, col), column)| (table, row, col, column))
                 .collect(),
+            navigator: Thoughts::of(frames),
             ended: rec.ended,
             contact: rec.contact.map(|place| place.map(rounded)),
             goal: rec.goal.map(|goal| goal.map(rounded)),
@@ -236,6 +238,94 @@ impl<'a> Page<'a> {
             back: rec.back.as_deref(),
         })
     }
+}
+
+/// What a navigator thinks, over the ticks.
+#[derive(Serialize)]
+struct Thoughts {
+    /// Remembered points: x, y in the world as the robot believes it, first tick, number of ticks. One each as long as it
+    /// is remembered, as most are for many ticks.
+    points: [Column; 4],
+    heading: Column,
+    direction: Column,
+    v: Column,
+    w: Column,
+    /// 1 slowed, 2 changed by the gate, 4 trapped.
+    barrier: Column,
+    /// Sensors taken for dead, a bit each.
+    dead: Column,
+}
+
+impl Thoughts {
+    fn of(frames: &[Frame]) -> Option<Self> {
+        if frames.iter().all(|frame| frame.view.is_none()) {
+            return None;
+        }
+        let column = |scale: f64, value: &dyn Fn(&NavigatorView) -> Option<f64>| {
+            Column::new(
+                scale,
+                frames.iter().map(|f| f.view.as_ref().and_then(value)),
+            )
+        };
+        let flags = |flags: &[bool]| {
+            let bits = flags.iter().enumerate().map(|(k, on)| u8::from(*on) << k);
+            f64::from(bits.sum::<u8>())
+        };
+        Some(Self {
+            points: remembered(frames),
+            heading: column(COARSE, &|v| v.heading),
+            direction: column(COARSE, &|v| Some(v.direction)),
+            v: column(COARSE, &|v| Some(v.wanted[0])),
+            w: column(COARSE, &|v| Some(v.wanted[1])),
+            barrier: column(1.0, &|v| Some(flags(&[v.slowed, v.gated, v.trapped]))),
+            dead: column(1.0, &|v| {
+                Some(v.dead.iter().map(|sensor| (1_u64 << sensor) as f64).sum())
+            }),
+        })
+    }
+}
+
+/// Steps per metre for remembered points: their own place is no better known than to a centimetre.
+const POINTS: f64 = 100.0;
+
+/// How far a point may be from the place that it has been drawn at so far to be the same, in these steps: more than
+/// rounding moves it.
+const SAME: f64 = 0.8;
+
+/// [`Thoughts::points`].
+fn remembered(frames: &[Frame]) -> [Column; 4] {
+    /// Place, first tick, and the last tick in which it was there.
+    type Point = ([f64; 2], usize, usize);
+    let mut gone: Vec<Point> = Vec::new();
+    let mut held: Vec<Point> = Vec::new();
+    for (tick, frame) in frames.iter().enumerate() {
+        let [x, y, heading] = frame.believed;
+        let (sin, cos) = heading.sin_cos();
+        let points = frame.view.iter().flat_map(|view| &view.points);
+        for [ahead, aside] in points {
+            let at = [x + ahead * cos - aside * sin, y + ahead * sin + aside * cos];
+            let at = at.map(|part| part * POINTS);
+            let near = |(place, ..): &&mut Point| {
+                (place[0] - at[0]).abs() <= SAME && (place[1] - at[1]).abs() <= SAME
+            };
+            match held.iter_mut().find(near) {
+                Some((.., seen)) => *seen = tick,
+                None => held.push((at.map(f64::round), tick, tick)),
+            }
+        }
+        gone.extend(held.extract_if(.., |(.., seen)| *seen < tick));
+    }
+    gone.append(&mut held);
+    gone.sort_by_key(|(_, first, _)| *first);
+    let column =
+        |value: &dyn Fn(&Point) -> f64| Column::new(1.0, gone.iter().map(|p| Some(value(p))));
+    let place = |k: usize| Column::new(POINTS, gone.iter().map(|p| Some(p.0[k] / POINTS)));
+    [
+        place(0),
+        place(1),
+        column(&|(_, first, _)| *first as f64),
+        column(&|(_, first, seen)| (seen - first + 1) as f64),
+    ]
 }
 
 /// Rounded to 0.1 mm; what is not finite stays so and becomes `null` in JSON.

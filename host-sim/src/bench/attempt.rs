@@ -212,6 +212,8 @@ pub struct Step<'a> {
     pub cross_track: f64,
     /// Place of the route that is nearest to the body's centre, m along it.
     pub way: f64,
+    /// Who decided.
+    pub navigator: &'a (dyn Navigator + 'a),
 }
 
 /// Where a run ended: up to a period after its last tick, in the middle of a motion.
@@ -296,6 +298,7 @@ pub fn drive_to_end(
                 clearance,
                 cross_track,
                 way,
+                navigator: &*navigator,
             });
             watch.see(time, vehicle.pose, cross_track, command);
             if watch.given_up(time) {

@@ -2,9 +2,10 @@
 
 use super::body::Body;
 use super::vehicle::Limits;
-use crate::recording::BeamView;
+use crate::recording::{BeamView, NavigatorView};
 use crate::track::Piece;
 use fuzzypilot::ports::RangeReading;
+use std::fmt;
 
 /// What a navigator is told before it sets off. It is made anew for every run.
 #[derive(Clone, Debug)]
@@ -101,4 +102,15 @@ impl Mode {
 pub trait Navigator {
     /// One tick. Called every [`Mission::period`]; what it returns acts [`Mission::latency`] later.
     fn tick(&mut self, inputs: &Inputs<'_>) -> Command;
+
+    /// What it thought in the last tick, for the replay. Nothing is to be kept for this that costs a campaign time.
+    fn view(&self) -> Option<NavigatorView> {
+        None
+    }
+}
+
+impl fmt::Debug for dyn Navigator + '_ {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Navigator")
+    }
 }

@@ -1,13 +1,14 @@
 //! The library's navigator behind the bench's trait: quantities at the edge, the route as a path, a scan to sectors.
 
 use super::navigator::{Command, Inputs, Mission, Mode, Navigator};
-use crate::recording::BeamView;
+use crate::recording::{BeamView, NavigatorView};
 use crate::run::segment;
 use crate::si;
 use fuzzypilot::geometry::{Point, Pose};
 use fuzzypilot::guide::{StoredPath, Waypoint};
 use fuzzypilot::navigate::{
-    Manoeuvre, Navigator as Engine, NavigatorParams, RangeSet, Setup, Task, presets,
+    Manoeuvre, NavigationRecord, Navigator as Engine, NavigatorParams, RangeSet, Setup, Task,
+    presets,
 };
 use fuzzypilot::params::{Limits, Mount};
 use fuzzypilot::ports::Range;
@@ -38,6 +39,7 @@ pub struct Ours {
     path: Option<Box<StoredPath<PIECES, POINTS>>>,
     /// Directions of a lidar's beams; none with single sensors.
     beams: Vec<Angle>,
+    last: Option<NavigationRecord>,
 }
 
 impl Ours {
@@ -82,6 +84,7 @@ impl Ours {
             goal: Point::new(si::metres(x), si::metres(y)),
             path,
             beams,
+            last: None,
         }
     }
 }
@@ -104,6 +107,7 @@ impl Navigator for Ours {
             None => Task::Goal(self.goal),
         };
         let record = self.engine.step(&self.setup, si::pose(inputs.pose), task);
+        self.last = Some(record);
         Command {
             speed: si::from_speed(record.twist.linear),
             yaw_rate: si::from_rate(record.twist.angular),
@@ -115,6 +119,31 @@ impl Navigator for Ours {
                 Manoeuvre::Arrived => Mode::Arrived,
             },
         }
+    }
+
+    fn view(&self) -> Option<NavigatorView> {
+        let record = self.last?;
+        let points = self.engine.memory().points().map(|point| {
+            let point = point.point();
+            [si::from_metres(point.x), si::from_metres(point.y)]
+        });
+        let wanted = record.wanted;
+        let seems_dead = |sensor: &usize| record.dead >> sensor & 1 == 1;
+        Some(NavigatorView {
+            points: points.collect(),
+            heading: record.heading.map(|heading| si::from_angle(heading.angle)),
+            direction: si::from_angle(record.direction),
+            wanted: [si::from_speed(wanted.linear), si::from_rate(wanted.angular)],
+            slowed: record.guarded.slowed,
+            gated: record.guarded.gated,
+            trapped: record.guarded.trapped,
+            // Of a lidar these are sectors, not beams.
+            dead: if self.beams.is_empty() {
+                (0..SENSORS).filter(seems_dead).collect()
+            } else {
+                Vec::new()
+            },
+        })
     }
 }
 

@@ -30,6 +30,7 @@ pub fn record(
         &mut |step| {
             frames.push(Frame {
                 movers: moving(arena, step.time),
+                view: step.navigator.view(),
                 ..frame(step, half_track)
             });
         },

@@ -954,6 +954,7 @@ mod tests {
         signals: Vec::new(),
         fired: Vec::new(),
         movers: Vec::new(),
+        view: None,
     };
 
     /// An S of two half circles, an obstacle on the first that is driven around, two beside the second.

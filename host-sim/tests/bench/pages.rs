@@ -2,11 +2,13 @@
 
 use super::command::sim;
 use host_sim::bench::arena::{Arena, Circle, Mover};
-use host_sim::bench::attempt::{Ending, Setting};
-use host_sim::bench::body::{Body, JACKAL};
+use host_sim::bench::attempt::{Dead, Ending, Setting};
+use host_sim::bench::body::{Body, BodyFrame, JACKAL};
 use host_sim::bench::controllers::named;
 use host_sim::bench::recorded::record;
 use host_sim::bench::sensors;
+use host_sim::bench::worlds::load;
+use host_sim::bench::worlds::numbers::Numbers;
 use host_sim::plot::run::run_svg;
 use host_sim::plot::thumbnail::{Place, thumbnail_svg};
 use host_sim::recording::Recording;
@@ -251,4 +253,59 @@ fn a_replay_says_what_was_asked_for_and_leads_back() {
             );
         }
     }
+}
+
+#[test]
+fn the_navigator_s_thoughts_are_in_its_replay_and_keep_it_small() {
+    let way = ["--worlds", "generated:barn", "--numbers", "3"];
+    let arenas = load(way[1], &Numbers::parse(way[3]).unwrap(), &JACKAL).unwrap();
+    let mut setting = Setting::new(sensors::named("cone16").unwrap(), 1.0, false);
+    setting.dead = Dead::One(2);
+    // It never arrives, so that there are as many ticks as there can be.
+    let mut arena = arenas[0].clone();
+    arena.goal_radius = 1e-9;
+    let (outcome, recording) = record(&named("ours").unwrap()[0], &arena, &setting, 0);
+    let text = replay::html(&recording).unwrap();
+    assert!(
+        outcome.time_s > 20.0 && text.len() < 600_000,
+        "{}",
+        text.len()
+    );
+
+    let thoughts = &embedded(&text)["navigator"];
+    let [x, y, first, ticks] = [0, 1, 2, 3].map(|k| column(&thoughts["points"][k]));
+    let speeds = column(&thoughts["v"]);
+    let barrier = column(&thoughts["barrier"]);
+    let mut slowed = 0;
+    for (tick, frame) in recording.frames.iter().enumerate() {
+        let Some(view) = &frame.view else {
+            assert!(recording.ended && tick == recording.frames.len() - 1);
+            continue;
+        };
+        assert!((speeds[tick].unwrap() - view.wanted[0]).abs() < 1e-3);
+        slowed += u32::from(barrier[tick].unwrap() as u8 & 1);
+        assert_eq!(barrier[tick].unwrap() as u8 & 1, u8::from(view.slowed));
+        if tick % 50 != 0 {
+            continue;
+        }
+        let there = |k: usize| {
+            let first = first[k].unwrap() as usize;
+            (first..first + ticks[k].unwrap() as usize).contains(&tick)
+        };
+        let drawn: Vec<[f64; 2]> = (0..x.len())
+            .filter(|k| there(*k))
+            .map(|k| [x[k].unwrap(), y[k].unwrap()])
+            .collect();
+        let frame = BodyFrame::new(frame.believed);
+        for point in &view.points {
+            let [u, v] = frame.tell(*point);
+            let near = |p: &&[f64; 2]| (p[0] - u).hypot(p[1] - v) < 0.012;
+            assert!(drawn.iter().find(near).is_some(), "tick {tick}: {u} {v}");
+        }
+        assert!(drawn.len() <= view.points.len());
+    }
+    assert!(slowed > 0 && x.len() > 100);
+    // Nobody else tells.
+    let (_, other) = blind(&ground(Vec::new(), Vec::new()), JACKAL);
+    assert!(embedded(&replay::html(&other).unwrap())["navigator"].is_null());
 }
