@@ -26,6 +26,7 @@ pub mod ranging;
 pub mod recorded;
 pub mod report;
 pub mod results;
+pub mod rows;
 pub mod score;
 pub mod seeds;
 pub mod sensors;

@@ -5,6 +5,7 @@ use super::arena::Arena;
 use super::attempt::Ending;
 use super::body::Body;
 use super::results::{Conditions, Figures, Results};
+use super::rows;
 use crate::plot::palette::{MODES, hex};
 use crate::plot::thumbnail::{Place, thumbnail_svg};
 use crate::recording::Recording;
@@ -19,6 +20,8 @@ pub struct Failure {
     pub world: u32,
     /// Seed.
     pub seed: u64,
+    /// The sensor that was dead, if one was.
+    pub dead: Option<usize>,
     /// How it ended.
     pub ending: Ending,
     /// When, s.
@@ -75,9 +78,7 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> Strin
         conditions(&mut page, &first.conditions);
     }
     figures(&mut page, results);
-    for result in results {
-        beside(&mut page, result);
-    }
+    beside(&mut page, results);
     if !failures.is_empty() {
         legend(&mut page);
     }
@@ -93,9 +94,12 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> Strin
             escaped(name)
         );
         for f in own {
+            let dead = f
+                .dead
+                .map_or_else(String::new, |sensor| format!(", sensor&nbsp;{sensor} dead"));
             let _ = writeln!(
                 page,
-                "<a href=\"{}\">{}<span>world {}, seed {}: {} at {:.1} s</span></a>",
+                "<a href=\"{}\">{}<span>world&nbsp;{}, seed&nbsp;{}{dead}: {} at&nbsp;{:.1}&nbsp;s</span></a>",
                 f.replay,
                 f.picture,
                 f.world,
@@ -139,72 +143,62 @@ fn conditions(page: &mut String, c: &Conditions) {
 
 /// A row a controller, with 95 % intervals where there are some.
 fn figures(page: &mut String, results: &[Results]) {
-    page.push_str("<div class=\"wide\"><table><tr><th>controller");
-    for (_, heading, _) in COLUMNS {
+    table(page, &rows::figures(results), "Figures", "");
+    page.push_str(
+        "<p class=\"small\">Small print: 95&nbsp;% intervals, worlds resampled. Time: mean of the runs that reached the goal. Least clearance: \
+         median over the runs. Cross-track, from the route that was given, and yaw acceleration: RMS.</p>\n",
+    );
+}
+
+/// What was asked for beside the figures: the sound robot, dead sensors, routes.
+fn beside(page: &mut String, results: &[Results]) {
+    if let Some(costs) = rows::costs(results) {
+        page.push_str("<h2>The same with a sound robot</h2>\n");
+        table(page, &costs, "The same with a sound robot", "");
+    }
+    for result in results {
+        if let Some(dead) = &result.dead_sensors {
+            let title = format!(
+                "{}, one sensor dead",
+                escaped(&result.conditions.controller)
+            );
+            let _ = writeln!(page, "<h2>{title}</h2>");
+            table(page, &rows::dead_sensors(dead), &title, "");
+            let _ = writeln!(page, "<p>{}.</p>", rows::worst(dead));
+        }
+    }
+    if let Some(routes) = rows::routes(results) {
+        page.push_str("<h2>Distance from the routes</h2>\n");
+        table(
+            page,
+            &routes,
+            "Distance from the routes",
+            " class=\"words\"",
+        );
+    }
+}
+
+/// A table in a box of its own to scroll, which the keyboard reaches.
+fn table(page: &mut String, rows: &rows::Table, label: &str, class: &str) {
+    let _ = write!(
+        page,
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{label}\"><table{class}><tr>"
+    );
+    for heading in rows.headings {
         let _ = write!(page, "<th>{heading}");
     }
     page.push('\n');
-    for result in results {
-        let _ = write!(page, "<tr><td>{}", escaped(&result.conditions.controller));
-        for (name, _, cell) in COLUMNS {
-            let i = &result.intervals_95;
-            let interval = match name {
-                "success" => Some(i.success_worlds),
-                "collision" => Some(i.collision_worlds),
-                "score" => Some(i.score_worlds),
-                _ => None,
-            };
-            let _ = write!(page, "<td>{}", cell(&result.figures));
-            if let Some([low, high]) = interval {
-                let _ = write!(page, "<small>{low:.3}–{high:.3}</small>");
+    for row in &rows.rows {
+        page.push_str("<tr>");
+        for cell in row {
+            let _ = write!(page, "<td>{}", escaped(&cell.text));
+            if let Some(interval) = &cell.interval {
+                let _ = write!(page, "<small>{interval}</small>");
             }
         }
         page.push('\n');
     }
-    page.push_str("</table></div>\n<p>Shares are from 0 to 1; small print: 95 % intervals, worlds resampled.</p>\n");
-}
-
-/// What a controller's campaign has beside its figures: the sound robot, dead sensors, routes.
-fn beside(page: &mut String, result: &Results) {
-    let name = escaped(&result.conditions.controller);
-    if let Some(sound) = &result.sound {
-        let _ = writeln!(
-            page,
-            "<p>{name} with a sound robot: success {:.4}, collision {:.4}, score {:.4}.</p>",
-            sound.figures.success, sound.figures.collision, sound.figures.score
-        );
-    }
-    if let Some(dead) = &result.dead_sensors {
-        let _ = writeln!(
-            page,
-            "<p>{name}, one sensor dead: the worst is number {} with success {:.4} and collision {:.4}.</p>",
-            dead.worst.sensor, dead.worst.success, dead.worst.collision
-        );
-    }
-    let routes = result.per_world.iter();
-    let routes: Vec<_> = routes
-        .filter_map(|w| Some((w.route.as_ref()?, &w.tracking)))
-        .collect();
-    if routes.is_empty() {
-        return;
-    }
-    let _ = writeln!(
-        page,
-        "<table><tr><th>{name}: route<th>stretch<th>RMS m<th>largest m"
-    );
-    for (route, tracking) in routes {
-        for t in tracking {
-            let _ = writeln!(
-                page,
-                "<tr><td>{}<td>{}<td>{:.4}<td>{:.4}",
-                escaped(route),
-                escaped(&t.stretch),
-                t.rms_m,
-                t.max_m
-            );
-        }
-    }
-    page.push_str("</table>\n");
+    page.push_str("</table></div>\n");
 }
 
 /// What the pictures' colours mean.
@@ -226,14 +220,14 @@ fn legend(page: &mut String) {
 /// The worlds' figures, a line a controller and world.
 pub fn per_world(results: &[Results]) -> String {
     let mut text = String::from("controller,world");
-    for (name, _, _) in COLUMNS {
+    for (name, _) in COLUMNS {
         let _ = write!(text, ",{name}");
     }
     text.push('\n');
     for result in results {
         for world in &result.per_world {
             let _ = write!(text, "{},{}", result.conditions.controller, world.world);
-            for (_, _, cell) in COLUMNS {
+            for (_, cell) in COLUMNS {
                 let _ = write!(text, ",{}", cell(&world.figures));
             }
             text.push('\n');
@@ -244,30 +238,30 @@ pub fn per_world(results: &[Results]) -> String {
 
 type Cell = fn(&Figures) -> String;
 
-/// Name in the CSV file, heading on the page, and the figure.
-const COLUMNS: [(&str, &str, Cell); 12] = [
-    ("runs", "runs", |f| f.runs.to_string()),
-    ("success", "success", |f| format!("{:.4}", f.success)),
-    ("collision", "collision", |f| format!("{:.4}", f.collision)),
-    ("timeout", "out of time", |f| format!("{:.4}", f.timeout)),
-    ("blocked", "blocked", |f| format!("{:.4}", f.blocked)),
-    ("out_or_blocked", "out or blocked", |f| {
-        format!("{:.4}", f.out_or_blocked)
+/// Name in the CSV file, and the figure. Shares are from 0 to 1.
+const COLUMNS: [(&str, Cell); 13] = [
+    ("runs", |f| f.runs.to_string()),
+    ("success", |f| format!("{:.4}", f.success)),
+    ("collision", |f| format!("{:.4}", f.collision)),
+    ("timeout", |f| format!("{:.4}", f.timeout)),
+    ("blocked", |f| format!("{:.4}", f.blocked)),
+    ("out_or_blocked", |f| format!("{:.4}", f.out_or_blocked)),
+    ("score", |f| format!("{:.4}", f.score)),
+    ("time_s", |f| {
+        f.mean_time_s
+            .map_or_else(String::new, |time| format!("{time:.2}"))
     }),
-    ("score", "score", |f| format!("{:.4}", f.score)),
-    ("time_s", "mean time s", |f| format!("{:.2}", f.mean_time_s)),
-    ("min_clearance_m", "least clearance m, median", |f| {
+    ("min_clearance_m", |f| {
         format!("{:.3}", f.median_min_clearance_m)
     }),
-    (
-        "yaw_acceleration_rms",
-        "yaw acceleration rad/s², RMS",
-        |f| format!("{:.2}", f.omega_rate_rms),
-    ),
-    ("longest_stall_s", "longest stall s", |f| {
-        format!("{:.2}", f.longest_stall_s)
+    ("cross_track_rms_m", |f| {
+        format!("{:.3}", f.cross_track_rms_m)
     }),
-    ("stalls", "stalls over 5 s", |f| f.stalls.to_string()),
+    ("yaw_acceleration_rms", |f| {
+        format!("{:.2}", f.omega_rate_rms)
+    }),
+    ("longest_stall_s", |f| format!("{:.2}", f.longest_stall_s)),
+    ("stalls", |f| f.stalls.to_string()),
 ];
 
 const HEAD: &str = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Navigation bench</title><style>

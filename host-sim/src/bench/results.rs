@@ -59,8 +59,8 @@ pub struct Figures {
     pub out_or_blocked: f64,
     /// Mean of the benchmark's score, 0 to 0.5.
     pub score: f64,
-    /// Mean time of the successful runs, s; zero if there are none.
-    pub mean_time_s: f64,
+    /// Mean time of the successful runs, s; none if there are none.
+    pub mean_time_s: Option<f64>,
     /// Median over the runs of the least distance from anything, m.
     pub median_min_clearance_m: f64,
     /// RMS over the runs of each run's RMS distance from the given route, m.
@@ -172,7 +172,8 @@ impl Figures {
             blocked: share(Ending::Blocked),
             out_or_blocked: share(Ending::Reached) + share(Ending::Blocked),
             score: mean(|o| o.score),
-            mean_time_s: reached.iter().fold(0.0, |sum, t| sum + t) / reached.len().max(1) as f64,
+            mean_time_s: (!reached.is_empty())
+                .then(|| reached.iter().fold(0.0, |sum, t| sum + t) / reached.len() as f64),
             median_min_clearance_m: median(&mut clearances),
             cross_track_rms_m: mean(|o| o.cross_track_rms_m * o.cross_track_rms_m).sqrt(),
             cross_track_max_m: outcomes

@@ -233,6 +233,7 @@ fn a_replay_says_what_was_asked_for_and_leads_back() {
     for (task, straight) in [("goal", true), ("path", false)] {
         let (page, replays) = report(&[&forest[..], &robot, &["--task", task]].concat());
         assert!(!replays.is_empty(), "{task}: all arrived");
+        let text = words(&page);
         for (file, replay) in replays {
             let [world, _] = file[9..].split('-').collect::<Vec<_>>()[..] else {
                 panic!("{file}");
@@ -246,10 +247,10 @@ fn a_replay_says_what_was_asked_for_and_leads_back() {
             for fact in [["task", task], ["sensors", "cone16"], ["dead sensor", "3"]] {
                 assert!(facts.contains(&json!(fact)), "{fact:?}: {facts:?}");
             }
-            let words = replay["variant"].as_str().unwrap();
+            let ending = replay["variant"].as_str().unwrap();
             assert!(
-                page.contains(&format!("world {world}, seed 0: {words}")),
-                "{words}"
+                text.contains(&format!("world {world}, seed 0, sensor 3 dead: {ending}")),
+                "{ending}"
             );
         }
     }
@@ -308,4 +309,87 @@ fn the_navigator_s_thoughts_are_in_its_replay_and_keep_it_small() {
     // Nobody else tells.
     let (_, other) = blind(&ground(Vec::new(), Vec::new()), JACKAL);
     assert!(embedded(&replay::html(&other).unwrap())["navigator"].is_null());
+}
+
+/// The words of a page without its marks.
+fn words(page: &str) -> String {
+    let mut text = String::new();
+    for part in page.split('<') {
+        text.push(' ');
+        text.push_str(part.split_once('>').map_or(part, |(_, rest)| rest));
+    }
+    text.replace("&nbsp;", " ")
+}
+
+/// The cells of the first row of a page that has something in it.
+fn cells(page: &str, with: &str) -> Vec<String> {
+    let mut rows = page
+        .split("<tr>")
+        .map(|rest| rest.split('\n').next().unwrap());
+    let row = rows.find(|row| row.contains(with)).unwrap();
+    let cells = row.split("<td>").skip(1);
+    cells.map(|cell| words(cell).trim().to_owned()).collect()
+}
+
+#[test]
+fn routes_that_nobody_finished_have_no_distance() {
+    let routes = ["--worlds", "generated:routes", "--numbers", "0,7"];
+    let robot = ["--controllers", "pure-pursuit"];
+    let (page, _) = report(&[&routes[..], &robot].concat());
+    let line = cells(&page, "<td>line");
+    assert!(line[3].parse::<f64>().unwrap() < 0.01 && line[5].is_empty() && line[6] == "100");
+    // Blind, it drives into the cylinder.
+    assert_eq!(cells(&page, "<td>pass")[3..], ["–", "–", "–", "0"]);
+    assert!(page.contains("on it again after m"));
+}
+
+#[test]
+fn figures_that_there_are_none_of_are_not_zero() {
+    let dir = tempdir().unwrap();
+    sim(dir.path())
+        .args(["bench", "--worlds", "generated:slalom", "--numbers", "0-2"])
+        .args(["--task", "goal", "--controllers", "pure-pursuit,vfh"])
+        .args(["--report", "r", "--json", "r.json"])
+        .assert()
+        .success();
+    let read = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
+    let results: Value = serde_json::from_str(&read("r.json")).unwrap();
+    let figures = [&results[0], &results[1]];
+    assert_eq!(figures[0]["success"], 0.0);
+    assert!(figures[1]["success"].as_f64().unwrap() > 0.0);
+    assert!(figures[0]["mean_time_s"].is_null() && figures[1]["mean_time_s"].is_number());
+    assert!(figures[0]["median_min_clearance_m"].as_f64().unwrap() <= 0.0);
+    let page = read("r/index.html");
+    let table = read("r/table.txt");
+    let headings = page.split("<th>").skip(1).map(|rest| {
+        let heading = rest.split(['<', '\n']).next().unwrap();
+        heading.to_owned()
+    });
+    let headings: Vec<String> = headings.collect();
+    for heading in &headings {
+        assert!(table.contains(heading.as_str()), "{heading}");
+    }
+    let cells = cells(&page, "<td>pure-pursuit");
+    let cell = |name: &str| &cells[headings.iter().position(|h| h == name).unwrap()];
+    assert_eq!(cell("time s"), "–");
+    assert_eq!(cell("least clearance m"), "contact");
+    assert!(cell("collision %").starts_with("100.0"));
+    assert!(cell("cross-track m").parse::<f64>().is_ok());
+    assert!(table.contains("contact") && table.contains("–"));
+}
+
+#[test]
+fn what_trouble_costs_and_dead_sensors_are_on_the_page() {
+    // Where nothing stands in the way no sensor is missed.
+    let easy = ["--worlds", "generated:routes", "--numbers", "0"];
+    let each = ["--dead", "each", "--sensors", "ultrasonic5", "--seeds", "5"];
+    let blind = ["--controllers", "pure-pursuit", "--time-limit", "5"];
+    let (page, replays) = report(&[&easy[..], &each, &blind].concat());
+    let text = words(&page);
+    assert!(text.contains("The same with a sound robot"));
+    assert!(text.contains("points lost") && text.contains("pure-pursuit, one sensor dead"));
+    assert!(text.contains("none is worse than another"));
+    assert!(!text.contains("worst: sensor"));
+    assert_eq!(replays.len(), 5);
+    assert!(text.contains("seed 3, sensor 3 dead: out of time at 5.0 s"));
 }

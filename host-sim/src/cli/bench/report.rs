@@ -56,6 +56,7 @@ pub fn write(
                 controller: controller.name.to_owned(),
                 world: arena.number,
                 seed: attempt.seed,
+                dead: attempt.dead_sensor,
                 ending: outcome.ending,
                 time: outcome.time_s,
                 picture: picture(arena, &campaign.setting.body, &recording, outcome.ending)?,
