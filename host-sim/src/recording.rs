@@ -137,6 +137,8 @@ pub struct Recording {
     pub outline: Vec<[f64; 2]>,
     /// Obstacles that stand still.
     pub obstacles: Vec<Disc>,
+    /// Obstacles that stand still and that the path knows nothing of.
+    pub unmapped: Vec<Disc>,
     /// Radii of the obstacles that move, metres; where they are is in the frames.
     pub movers: Vec<f64>,
     /// Path as polylines, x, y in metres, dense enough to draw (one polyline a stretch without gaps).

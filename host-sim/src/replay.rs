@@ -62,6 +62,8 @@ struct Page<'a> {
     robot_radius: f64,
     outline: &'a [[f64; 2]],
     obstacles: Vec<(&'a str, f64, f64, f64)>,
+    /// x, y, radius.
+    unmapped: Vec<[f64; 3]>,
     /// Radius, and x and y over the ticks.
     movers: Vec<(f64, [Column; 2])>,
     path: Vec<[Column; 2]>,
@@ -166,6 +168,11 @@ impl<'a> Page<'a> {
                         rounded(d.radius),
                     )
                 })
+                .collect(),
+            unmapped: rec
+                .unmapped
+                .iter()
+                .map(|d| [d.x, d.y, d.radius].map(rounded))
                 .collect(),
             movers: rec
                 .movers

@@ -72,6 +72,8 @@ pub struct Arena {
     pub number: u32,
     /// What stands still.
     pub circles: Vec<Circle>,
+    /// How many of these, the last ones, the route knows nothing of.
+    pub unmapped: usize,
     /// What moves.
     pub movers: Vec<Mover>,
     /// x, y (m), heading (rad).

@@ -1,6 +1,6 @@
 //! A run again, kept tick by tick for the replay page.
 
-use super::arena::Arena;
+use super::arena::{Arena, Circle};
 use super::attempt::{CLEARANCE_REACH, End, Outcome, PERIOD, Setting, Step, drive_to_end};
 use super::body::Body;
 use super::controllers::Controller;
@@ -42,6 +42,8 @@ pub fn record(
             ..last(frames.last(), &end, half_track)
         });
     }
+    let known = arena.circles.len() - arena.unmapped;
+    let (mapped, unmapped) = arena.circles.split_at(known);
     let recording = Recording {
         scenario: format!("{} in world {}", controller.name, arena.number),
         variant: format!("{} at {:.1} s", outcome.ending.words(), outcome.time_s),
@@ -52,16 +54,8 @@ pub fn record(
             Body::Disc(_) => Vec::new(),
             _ => setting.body.corners([0.0; 3]),
         },
-        obstacles: arena
-            .circles
-            .iter()
-            .map(|c| Disc {
-                name: String::new(),
-                x: c.at[0],
-                y: c.at[1],
-                radius: c.radius,
-            })
-            .collect(),
+        obstacles: discs(mapped),
+        unmapped: discs(unmapped),
         movers: arena.movers.iter().map(|m| m.radius).collect(),
         path: vec![mission.route],
         beams: setting.sensors.clone(),
@@ -114,6 +108,16 @@ fn last(before: Option<&Frame>, end: &End, half_track: f64) -> Frame {
         wheels: wheels(end.twist, half_track),
         ..Frame::default()
     }
+}
+
+fn discs(circles: &[Circle]) -> Vec<Disc> {
+    let disc = |c: &Circle| Disc {
+        name: String::new(),
+        x: c.at[0],
+        y: c.at[1],
+        radius: c.radius,
+    };
+    circles.iter().map(disc).collect()
 }
 
 fn moving(arena: &Arena, time: f64) -> Vec<[f64; 2]> {

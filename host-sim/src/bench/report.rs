@@ -6,7 +6,7 @@ use super::attempt::Ending;
 use super::body::Body;
 use super::results::{Conditions, Figures, Results};
 use super::rows;
-use crate::plot::palette::{MODES, hex};
+use crate::plot::palette::{MODES, sheet};
 use crate::plot::thumbnail::{Place, thumbnail_svg};
 use crate::recording::Recording;
 use std::fmt::Write;
@@ -26,6 +26,10 @@ pub struct Failure {
     pub ending: Ending,
     /// When, s.
     pub time: f64,
+    /// Whether something stood there that the route knows nothing of.
+    pub unmapped: bool,
+    /// Whether something moved.
+    pub moving: bool,
     /// Its picture, SVG.
     pub picture: String,
     /// Its replay page, beside this one.
@@ -73,14 +77,14 @@ pub fn picture(
 
 /// The page. `left_out` is the number of failed runs that have no picture.
 pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> String {
-    let mut page = String::from(HEAD);
+    let mut page = head("Navigation bench");
     if let Some(first) = results.first() {
         conditions(&mut page, &first.conditions);
     }
     figures(&mut page, results);
     beside(&mut page, results);
     if !failures.is_empty() {
-        legend(&mut page);
+        legend(&mut page, failures);
     }
     for result in results {
         let name = &result.conditions.controller;
@@ -99,8 +103,9 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> Strin
                 .map_or_else(String::new, |sensor| format!(", sensor&nbsp;{sensor} dead"));
             let _ = writeln!(
                 page,
-                "<a href=\"{}\">{}<span>world&nbsp;{}, seed&nbsp;{}{dead}: {} at&nbsp;{:.1}&nbsp;s</span></a>",
+                "<a href=\"{}\" style=\"width:max(9em,{}px)\">{}<span>world&nbsp;{}, seed&nbsp;{}{dead}: {} at&nbsp;{:.1}&nbsp;s</span></a>",
                 f.replay,
+                width(&f.picture),
                 f.picture,
                 f.world,
                 f.seed,
@@ -120,6 +125,13 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> Strin
     page
 }
 
+/// Width of a picture, pixels.
+fn width(picture: &str) -> &str {
+    let rest = picture.split_once("width=\"");
+    rest.and_then(|(_, rest)| rest.split_once('"'))
+        .map_or("0", |(width, _)| width)
+}
+
 /// What was run.
 fn conditions(page: &mut String, c: &Conditions) {
     let last = c.first_seed + c.seeds.saturating_sub(1);
@@ -129,7 +141,7 @@ fn conditions(page: &mut String, c: &Conditions) {
     };
     let _ = writeln!(
         page,
-        "<p>Task {}, worlds {} ({}){unmapped}, body {}, sensors {}, {} m/s, seeds {} to {last}; {}.</p>",
+        "<p>Task {}, worlds {} ({}){unmapped}, body {}, sensors {}, {}&nbsp;m/s, seeds {} to {last}; {}.</p>",
         escaped(&c.task),
         escaped(&c.worlds),
         escaped(&c.numbers),
@@ -201,20 +213,44 @@ fn table(page: &mut String, rows: &rows::Table, label: &str, class: &str) {
     page.push_str("</table></div>\n");
 }
 
-/// What the pictures' colours mean.
-fn legend(page: &mut String) {
+/// What is seen in the pictures.
+fn legend(page: &mut String, failures: &[Failure]) {
     page.push_str("<p class=\"legend\">");
     for hue in MODES.iter().filter(|hue| hue.mode != "stop") {
+        let mode = hue.mode;
         let _ = write!(
             page,
-            "<i style=\"background:{}\"></i>{}",
-            hex(hue.light),
-            hue.mode
+            "<span><i style=\"background:var(--mode-{mode})\"></i>{mode}</span> "
         );
     }
-    page.push_str(
-        "<i class=\"route\"></i>given route, and the goal's circle. A picture opens the run's replay.</p>\n",
-    );
+    let any = |of: fn(&Failure) -> bool| failures.iter().any(of);
+    for (class, name, shown) in [
+        ("route", "given route", true),
+        ("goal", "the goal's circle", true),
+        ("start", "start", true),
+        ("disc", "obstacle", true),
+        (
+            "unmapped",
+            "obstacle that the route does not know",
+            any(|f| f.unmapped),
+        ),
+        (
+            "mover",
+            "moving obstacle, where it was at the end",
+            any(|f| f.moving),
+        ),
+        ("end", "robot where the run ended", true),
+        (
+            "touched",
+            "touched something, at the cross",
+            any(|f| f.ending == Ending::Collision),
+        ),
+    ] {
+        if shown {
+            let _ = write!(page, "<span><i class=\"{class}\"></i>{name}</span> ");
+        }
+    }
+    page.push_str("<br>A picture opens the run's replay.</p>\n");
 }
 
 /// The worlds' figures, a line a controller and world.
@@ -264,15 +300,31 @@ const COLUMNS: [(&str, Cell); 13] = [
     ("stalls", |f| f.stalls.to_string()),
 ];
 
-const HEAD: &str = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Navigation bench</title><style>
-body{font:15px/1.45 Ubuntu,Helvetica,Arial,sans-serif;color:#22262b;margin:2em}main{max-width:80em;margin:auto}
-.wide{overflow-x:auto}table{border-collapse:collapse;margin:1em 0}td,th{padding:.3em .8em;border-bottom:1px solid #e3e6e9;text-align:right;vertical-align:top}
-th{font-weight:600;color:#5f666e;vertical-align:bottom}td:first-child,th:first-child{text-align:left}td small{display:block;color:#5f666e;white-space:nowrap}
-.runs{display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start}.runs a{color:#22262b;text-decoration:none;font-size:13px;width:min-content;min-width:9em}
-.runs svg{display:block;border:1px solid #e3e6e9;margin-bottom:.3em}.runs a:hover svg{border-color:#22262b}
-.legend i{display:inline-block;width:22px;height:3px;margin:0 .4em .25em 1.2em}.legend i:first-child{margin-left:0}
-.legend i.route{height:0;background:none;border-top:2px dashed #9aa0a6}
-</style></head><body><main><h1>Navigation bench</h1>
+/// The page up to its heading.
+fn head(title: &str) -> String {
+    format!(
+        "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>{title}</title><style>\n{}{STYLE}</style></head><body><main><h1>{title}</h1>\n",
+        sheet(".runs svg")
+    )
+}
+
+const STYLE: &str = ":root{--muted:#5f666e;--line:#e3e6e9}
+@media (prefers-color-scheme:dark){:root{--muted:#9aa8b5;--line:#2b3640}}
+body{font:15px/1.45 Ubuntu,Helvetica,Arial,sans-serif;color:var(--ink);background:var(--page);margin:min(2em,4vw)}main{max-width:80em;margin:auto}
+a{color:inherit}p,code{overflow-wrap:anywhere}.small{color:var(--muted);font-size:13px}
+.wide{overflow-x:auto}table{border-collapse:collapse;margin:1em 0}td,th{padding:.3em .8em;border-bottom:1px solid var(--line);text-align:right;vertical-align:top}
+th{font-weight:600;color:var(--muted);vertical-align:bottom}td small{display:block;color:var(--muted);white-space:nowrap}
+td:first-child,th:first-child{text-align:left;position:sticky;left:0;background:var(--page);white-space:nowrap}
+.words td:nth-child(-n+3),.words th:nth-child(-n+3){text-align:left}
+.runs{display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start}.runs a{text-decoration:none;font-size:13px;max-width:100%}
+.runs svg{display:block;box-sizing:border-box;max-width:100%;height:auto;border:1px solid var(--line);margin-bottom:.3em}.runs a:hover svg{border-color:var(--ink)}
+.legend span{white-space:nowrap;margin-right:.9em}.legend i{display:inline-block;box-sizing:border-box;width:22px;height:3px;margin:0 .4em .25em 0}
+.legend i.route{height:0;border-top:2px dashed var(--route)}
+.legend i.goal,.legend i.start,.legend i.disc,.legend i.unmapped,.legend i.mover{width:10px;height:10px;border-radius:50%;margin-bottom:0}
+.legend i.goal{width:14px;height:14px;border:1.5px solid var(--route);margin-bottom:-.15em}
+.legend i.start{width:7px;height:7px;background:var(--ink);margin-bottom:.1em}.legend i.disc{background:var(--disc)}
+.legend i.unmapped{border:2px solid var(--ink)}.legend i.mover{border:1px solid var(--disc);box-shadow:inset 0 0 0 2px var(--line);background:var(--line)}
+.legend i.end,.legend i.touched{width:14px;height:12px;border:1.5px solid var(--ink);margin-bottom:-.1em}.legend i.touched{border-color:var(--mode-stop)}
 ";
 
 fn escaped(text: &str) -> String {

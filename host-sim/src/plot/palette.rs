@@ -2,6 +2,8 @@
 //! CSS variables. The hues are Okabe and Ito's, which the colour blind can tell apart, and a red dark enough to differ
 //! from the orange in lightness as well; on a dark ground each is another shade of the same hue.
 
+use super::INK;
+use super::run::{OBSTACLE, PATH};
 use plotters::style::RGBColor;
 use std::fmt::Write;
 
@@ -50,6 +52,49 @@ const fn hue(mode: &'static str, light: RGBColor, dark: RGBColor, rank: u8) -> H
         dark,
         rank,
     }
+}
+
+/// What else is drawn, by the name of its CSS variable: on a light ground and on a dark one.
+const REST: [(&str, RGBColor, RGBColor); 4] = [
+    (
+        "page",
+        RGBColor(0xFF, 0xFF, 0xFF),
+        RGBColor(0x13, 0x1A, 0x20),
+    ),
+    ("ink", INK, RGBColor(0xE7, 0xED, 0xF2)),
+    ("disc", OBSTACLE, RGBColor(0x8B, 0x98, 0xA5)),
+    ("route", PATH, RGBColor(0x7B, 0x88, 0x94)),
+];
+
+/// The style sheet of a page with pictures in it: all colours as variables, and in the dark the pictures' own as well.
+pub fn sheet(pictures: &str) -> String {
+    let rest = |dark: bool| {
+        let mut text = String::new();
+        for (name, light, in_the_dark) in REST {
+            let colour = if dark { in_the_dark } else { light };
+            let _ = write!(text, "--{name}: {}; ", hex(colour));
+        }
+        text
+    };
+    let mut text = format!(
+        ":root{{color-scheme:light dark;{}{}}}\n@media (prefers-color-scheme:dark){{\n:root{{{}{}}}\n",
+        css(false),
+        rest(false),
+        css(true),
+        rest(true)
+    );
+    let modes = MODES.iter().chain([&OTHER]);
+    let modes = modes.map(|hue| (hue.light, hue.dark));
+    let rest = REST.iter().map(|(_, light, dark)| (*light, *dark));
+    for (light, dark) in modes.chain(rest) {
+        // As the drawing library spells it.
+        let (light, dark) = (hex(light).to_uppercase(), hex(dark));
+        for part in ["fill", "stroke"] {
+            let _ = writeln!(text, "{pictures} [{part}=\"{light}\"]{{{part}:{dark}}}");
+        }
+    }
+    text.push_str("}\n");
+    text
 }
 
 /// A mode's hue, if it has one of its own.

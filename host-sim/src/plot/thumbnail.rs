@@ -6,7 +6,7 @@ use super::run::{OBSTACLE, PATH, drawable, thinned, trajectory};
 use super::{INK, Panel, Placer, Point, Rect, document, extent};
 use crate::recording::{Frame, Recording};
 use anyhow::{Result, ensure};
-use plotters::style::Color;
+use plotters::style::{Color, WHITE};
 
 /// Height of the picture, pixels, and its widest.
 const HEIGHT: f64 = 320.0;
@@ -14,6 +14,9 @@ const WIDEST: f64 = 380.0;
 
 /// Room around everything, m.
 const ROOM: f64 = 0.3;
+
+/// Radius of the dot where the run began, pixels.
+const START: f64 = 3.5;
 
 /// Half the side of the cross on what was touched, pixels.
 const CROSS: f64 = 4.0;
@@ -39,6 +42,8 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
     let [goal_x, goal_y, goal_radius] = place.goal;
     // What moves is where it was when the run ended.
     let places = frames.last().map_or(&[][..], |last| &last.movers);
+    // What the path knows nothing of is hollow.
+    let hollow = || rec.unmapped.iter().map(|d| (d.x, d.y, d.radius));
     let moved = || {
         let of = |(place, radius): (&[f64; 2], &f64)| (place[0], place[1], *radius);
         places.iter().zip(&rec.movers).map(of)
@@ -47,7 +52,8 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
         let track = frames.iter().map(|f| f.truth[k]);
         let route = rec.path.iter().flatten().map(|p| p[k]);
         let outline = place.outline.iter().map(|p| p[k]);
-        let discs = drawable(rec).map(|d| (d.x, d.y, d.radius)).chain(moved());
+        let discs = drawable(rec).map(|d| (d.x, d.y, d.radius));
+        let discs = discs.chain(hollow()).chain(moved());
         let discs = discs.flat_map(|(x, y, radius)| [[x, y][k] - radius, [x, y][k] + radius]);
         let goal = [goal_x, goal_y][k];
         let goal = [goal - goal_radius, goal + goal_radius];
@@ -83,6 +89,10 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
                 OBSTACLE.to_rgba(),
             )?;
         }
+        for (x, y, radius) in hollow() {
+            canvas.disc(map.at(x, y), radius * scale, WHITE.to_rgba())?;
+            canvas.ring(map.at(x, y), radius * scale, 1.6, INK.to_rgba())?;
+        }
         for (x, y, radius) in moved() {
             canvas.disc(map.at(x, y), radius * scale, OBSTACLE.mix(0.45))?;
             canvas.ring(map.at(x, y), radius * scale, 1.0, OBSTACLE.to_rgba())?;
@@ -96,6 +106,8 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
             taken: Vec::new(),
             points: Vec::new(),
         };
+        let [x, y, _] = frames[0].truth;
+        canvas.disc(map.at(x, y), START, INK.to_rgba())?;
         trajectory(canvas, &frames, &map, &mut nowhere)?;
         let mut outline: Vec<Point> = place.outline.iter().map(|p| map.at(p[0], p[1])).collect();
         outline.extend(outline.first().copied());

@@ -22,6 +22,7 @@ fn ground(circles: Vec<Circle>, movers: Vec<Mover>) -> Arena {
     Arena {
         number: 1,
         circles,
+        unmapped: 0,
         movers,
         start: [0.0; 3],
         goal: [6.0, 0.0],
@@ -392,4 +393,64 @@ fn what_trouble_costs_and_dead_sensors_are_on_the_page() {
     assert!(!text.contains("worst: sensor"));
     assert_eq!(replays.len(), 5);
     assert!(text.contains("seed 3, sensor 3 dead: out of time at 5.0 s"));
+}
+
+#[test]
+fn what_the_route_does_not_know_and_what_moves_is_drawn_and_named() {
+    let soon = ["--controllers", "pure-pursuit", "--time-limit", "4"];
+    let plain = ["--worlds", "generated:forest", "--numbers", "2"];
+    let unmapped = ["--task", "unmapped", "--unmapped", "generated"];
+    let moving = ["--worlds", "generated:moving", "--numbers", "2"];
+    let cases: [(&[&str], usize, usize); 3] = [
+        (&[&soon[..], &plain].concat(), 0, 0),
+        (&[&soon[..], &plain, &unmapped].concat(), 3, 0),
+        (&[&soon[..], &moving].concat(), 0, 5),
+    ];
+    let mut discs = Vec::new();
+    for (arguments, hollow, movers) in cases {
+        let (page, replays) = report(arguments);
+        let replay = &replays[0].1;
+        let count = |key: &str| replay[key].as_array().unwrap().len();
+        assert_eq!((count("unmapped"), count("movers")), (hollow, movers));
+        discs.push(count("obstacles"));
+        let text = words(&page);
+        let names = |name: &str| text.contains(name);
+        assert_eq!(names("obstacle that the route does not know"), hollow > 0);
+        assert_eq!(names("moving obstacle"), movers > 0);
+        assert!(names("start") && names("robot where the run ended"));
+        let picture = page.split_once("<svg").unwrap().1;
+        let white = picture
+            .split("<circle")
+            .skip(1)
+            .filter(|rest| rest.split('>').next().unwrap().contains("fill=\"#FFFFFF\""));
+        assert_eq!(white.count(), hollow);
+    }
+    // The same trees; only what was put there is hollow.
+    assert_eq!(discs[0], discs[1]);
+}
+
+#[test]
+fn every_colour_of_a_picture_has_one_for_the_dark() {
+    let (page, _) = report(&[
+        "--worlds",
+        "generated:moving",
+        "--numbers",
+        "0-3",
+        "--task",
+        "unmapped",
+        "--unmapped",
+        "generated",
+        "--controllers",
+        "ours,rpp",
+    ]);
+    let mut colours = 0;
+    for part in ["fill", "stroke"] {
+        for rest in page.split(&format!(" {part}=\"#")).skip(1) {
+            let colour = rest.split('"').next().unwrap();
+            let rule = format!(".runs svg [{part}=\"#{colour}\"]{{{part}:#");
+            assert!(page.contains(&rule), "{rule}");
+            colours += 1;
+        }
+    }
+    assert!(colours > 20);
 }

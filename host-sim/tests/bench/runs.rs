@@ -17,6 +17,7 @@ fn open_ground(circles: Vec<Circle>) -> Arena {
     Arena {
         number: 1,
         circles,
+        unmapped: 0,
         movers: Vec::new(),
         start: [0.0; 3],
         goal: [6.0, 0.0],

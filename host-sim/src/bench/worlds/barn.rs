@@ -96,6 +96,7 @@ impl Common {
                     radius: self.cyl_radius,
                 })
                 .collect(),
+            unmapped: 0,
             movers: Vec::new(),
             start: self.start,
             goal: self.goal,

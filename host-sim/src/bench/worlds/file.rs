@@ -191,6 +191,7 @@ impl Raw {
         Ok(Arena {
             number: 0,
             circles,
+            unmapped: 0,
             movers,
             start: [x, y, degrees.to_radians()],
             goal: self.goal.into_inner(),

@@ -37,6 +37,7 @@ pub fn read_folder(folder: &Path, numbers: &Numbers) -> Result<Vec<Arena>, World
             Ok(Arena {
                 number,
                 circles: read_cylinders(&file)?,
+                unmapped: 0,
                 movers: Vec::new(),
                 start: START,
                 goal: GOAL,

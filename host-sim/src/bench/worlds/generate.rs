@@ -161,6 +161,7 @@ fn arena(circles: Vec<Circle>, start: [f64; 2], goal: [f64; 2], radius: f64) -> 
     Arena {
         number: 0,
         circles,
+        unmapped: 0,
         movers: Vec::new(),
         start: [start[0], start[1], FRAC_PI_2],
         goal,

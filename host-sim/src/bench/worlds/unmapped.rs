@@ -69,6 +69,7 @@ pub fn add(file: &Path, place: &str, arenas: &mut [Arena], body: &Body) -> Resul
         arena
             .circles
             .extend(own(arena.number).map(|(.., circle)| *circle));
+        arena.unmapped = arena.circles.len() - mapped;
         if check::fault(arena, body).is_none() {
             return Ok(());
         }
@@ -147,6 +148,7 @@ pub fn place(arenas: &mut [Arena]) {
                 continue;
             }
             placed += 1;
+            arena.unmapped += 1;
             if placed == PLACED {
                 break;
             }

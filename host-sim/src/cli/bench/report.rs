@@ -59,6 +59,8 @@ pub fn write(
                 dead: attempt.dead_sensor,
                 ending: outcome.ending,
                 time: outcome.time_s,
+                unmapped: !recording.unmapped.is_empty(),
+                moving: !recording.movers.is_empty(),
                 picture: picture(arena, &campaign.setting.body, &recording, outcome.ending)?,
                 replay: name,
             });

@@ -121,6 +121,7 @@ fn arena(route: Route, number: u32) -> Arena {
         } else {
             Vec::new()
         },
+        unmapped: usize::from(route.cylinder),
         movers: Vec::new(),
         start: route.pieces[0].at(0.0),
         goal: points[points.len() - 1],
