@@ -75,16 +75,38 @@ pub fn picture(
     )
 }
 
+/// What a page says of itself.
+#[derive(Clone, Debug, Default)]
+pub struct About {
+    /// The command that wrote it.
+    pub command: String,
+    /// Files with more, by the page's own place.
+    pub files: Vec<String>,
+}
+
 /// The page. `left_out` is the number of failed runs that have no picture.
-pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> String {
-    let mut page = head("Navigation bench");
+pub fn page(results: &[Results], failures: &[Failure], left_out: usize, about: &About) -> String {
+    let title = results.first().map_or_else(String::new, |first| {
+        let c = &first.conditions;
+        format!(": task {}, {}", escaped(&c.task), escaped(&c.sensors))
+    });
+    let mut page = head(&format!("Navigation bench{title}"));
     if let Some(first) = results.first() {
         conditions(&mut page, &first.conditions);
+        if let Some([index, count]) = first.shard {
+            let _ = writeln!(
+                page,
+                "<p><b>Only a part of the worlds: {index} of 0 to {}.</b> <code>host-sim merge</code> puts the parts' results together.</p>",
+                count - 1
+            );
+        }
     }
     figures(&mut page, results);
     beside(&mut page, results);
     if !failures.is_empty() {
         legend(&mut page, failures);
+    } else if left_out == 0 {
+        page.push_str("<p>No run failed.</p>\n");
     }
     for result in results {
         let name = &result.conditions.controller;
@@ -121,8 +143,42 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize) -> Strin
             "<p>{left_out} more failed runs have no picture; <code>--most-replays</code> allows more.</p>"
         );
     }
+    footer(&mut page, about);
     page.push_str("</main></body></html>\n");
     page
+}
+
+/// Where there is more, and how to have it again.
+fn footer(page: &mut String, about: &About) {
+    page.push_str("<p class=\"small\">");
+    for file in &about.files {
+        let name = file.rsplit('/').next().unwrap_or(file);
+        let _ = write!(
+            page,
+            "<a href=\"{}\">{}</a>, ",
+            escaped(&encoded(file)),
+            escaped(name)
+        );
+    }
+    let _ = writeln!(
+        page,
+        "host-sim {}: <code>{}</code></p>",
+        env!("CARGO_PKG_VERSION"),
+        escaped(&about.command)
+    );
+}
+
+/// A path as a link has it.
+fn encoded(path: &str) -> String {
+    let mut text = String::new();
+    for byte in path.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte) {
+            text.push(char::from(byte));
+        } else {
+            let _ = write!(text, "%{byte:02X}");
+        }
+    }
+    text
 }
 
 /// Width of a picture, pixels.
@@ -134,21 +190,23 @@ fn width(picture: &str) -> &str {
 
 /// What was run.
 fn conditions(page: &mut String, c: &Conditions) {
-    let last = c.first_seed + c.seeds.saturating_sub(1);
+    let seeds = match c.seeds {
+        0 | 1 => format!("seed&nbsp;{}", c.first_seed),
+        more => format!("seeds {} to&nbsp;{}", c.first_seed, c.first_seed + more - 1),
+    };
     let unmapped = match &c.unmapped {
         Some(file) => format!(", cylinders from {}", escaped(file)),
         None => String::new(),
     };
     let _ = writeln!(
         page,
-        "<p>Task {}, worlds {} ({}){unmapped}, body {}, sensors {}, {}&nbsp;m/s, seeds {} to {last}; {}.</p>",
+        "<p>Task {}, worlds {} ({}){unmapped}, body {}, sensors {}, {}&nbsp;m/s, {seeds}; {}.</p>",
         escaped(&c.task),
         escaped(&c.worlds),
         escaped(&c.numbers),
         escaped(&c.body),
         escaped(&c.sensors),
         c.speed,
-        c.first_seed,
         escaped(&c.disturbance),
     );
 }

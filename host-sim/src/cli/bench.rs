@@ -149,7 +149,8 @@ pub fn execute(arguments: &BenchArguments) -> anyhow::Result<()> {
         .map_or(Ok(()), |file| put(file, json(&results)?.as_bytes()));
     let reported = arguments.report.as_ref().map_or(Ok(()), |folder| {
         let most = arguments.most_replays as usize;
-        report::write(folder, &campaign, &chosen, &results, most)
+        let json = arguments.json.as_deref();
+        report::write(folder, &campaign, &chosen, &results, most, json)
     });
     printed.and(stored).and(reported)
 }

@@ -130,8 +130,8 @@ fn a_report_has_a_picture_and_a_replay_for_every_failed_run() {
     assert!(failed > 0, "a blind robot got through every forest");
     let page = read("report/index.html");
     assert_eq!(page.matches("<svg").count(), failed);
-    for link in page.split("href=\"").skip(1) {
-        let file = link.split('"').next().unwrap();
+    for link in page.split("href=\"runs/").skip(1) {
+        let file = format!("runs/{}", link.split('"').next().unwrap());
         assert!(
             read(&format!("report/{file}")).contains("</html>"),
             "{file}"

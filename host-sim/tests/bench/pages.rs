@@ -454,3 +454,47 @@ fn every_colour_of_a_picture_has_one_for_the_dark() {
     }
     assert!(colours > 20);
 }
+
+#[test]
+fn a_page_says_how_it_came_about() {
+    let dir = tempdir().unwrap();
+    let bench = |more: &[&str]| {
+        sim(dir.path())
+            .args(["bench", "--worlds", "generated:routes", "--numbers", "0-2"])
+            .args(["--controllers", "pure-pursuit", "--sensors", "cone8"])
+            .args(["--report", "a/r"])
+            .args(more)
+            .assert()
+            .success();
+        fs::read_to_string(dir.path().join("a/r/index.html")).unwrap()
+    };
+    let page = bench(&["--json", "all of it.json"]);
+    assert!(page.contains("<title>Navigation bench: task path, cone8</title>"));
+    let text = words(&page);
+    assert!(text.contains("--sensors cone8 --report a/r --json 'all of it.json'"));
+    assert!(text.contains(env!("CARGO_PKG_VERSION")));
+    assert!(text.contains(", seed 0;") && text.contains("No run failed."));
+    assert!(!text.contains("Only a part"));
+    let links = page.split("href=\"").skip(1);
+    let links: Vec<String> = links
+        .map(|rest| rest.split('"').next().unwrap().replace("%20", " "))
+        .collect();
+    assert_eq!(
+        links,
+        ["table.txt", "per-world.csv", "../../all of it.json"]
+    );
+    for link in links {
+        assert!(dir.path().join("a/r").join(&link).is_file(), "{link}");
+    }
+
+    let text = words(&bench(&[
+        "--shard",
+        "1/2",
+        "--seeds",
+        "2",
+        "--time-limit",
+        "1",
+    ]));
+    assert!(text.contains("Only a part of the worlds: 1 of 0 to 1."));
+    assert!(text.contains("seeds 0 to 1;") && !text.contains("No run failed."));
+}

@@ -6,7 +6,7 @@ use host_sim::bench::attempt::Ending;
 use host_sim::bench::campaign::Campaign;
 use host_sim::bench::controllers::Controller;
 use host_sim::bench::recorded::record;
-use host_sim::bench::report::{Failure, explain, page, per_world, picture};
+use host_sim::bench::report::{About, Failure, explain, page, per_world, picture};
 use host_sim::bench::results::Results;
 use host_sim::replay;
 use std::path::Path;
@@ -21,6 +21,7 @@ pub fn write(
     chosen: &[Controller],
     results: &[Results],
     most: usize,
+    json: Option<&Path>,
 ) -> anyhow::Result<()> {
     let runs = folder.join("runs");
     std::fs::create_dir_all(&runs)
@@ -68,6 +69,43 @@ pub fn write(
     }
     put(
         &folder.join("index.html"),
-        page(results, &failures, left_out).as_bytes(),
+        page(results, &failures, left_out, &about(folder, json)).as_bytes(),
     )
+}
+
+fn about(folder: &Path, json: Option<&Path>) -> About {
+    let mut words = std::env::args();
+    words.next();
+    let command = std::iter::once("host-sim".to_owned()).chain(words.map(|word| quoted(&word)));
+    let mut files = vec!["table.txt".to_owned(), "per-world.csv".to_owned()];
+    files.extend(json.and_then(|json| seen_from(folder, json)));
+    About {
+        command: command.collect::<Vec<_>>().join(" "),
+        files,
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+/// The way from a folder to a file, both of which are there; none on another drive.
+fn seen_from(folder: &Path, file: &Path) -> Option<String> {
+    let (folder, file) = (folder.canonicalize().ok()?, file.canonicalize().ok()?);
+    let (from, to): (Vec<_>, Vec<_>) = (folder.components().collect(), file.components().collect());
+    let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    if shared == 0 {
+        return None;
+    }
+    let up = std::iter::repeat_n("..".to_owned(), from.len() - shared);
+    let down = to[shared..]
+        .iter()
+        .map(|part| part.as_os_str().to_string_lossy().into_owned());
+    Some(up.chain(down).collect::<Vec<_>>().join("/"))
 }
