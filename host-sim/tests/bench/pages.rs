@@ -498,3 +498,47 @@ fn a_page_says_how_it_came_about() {
     assert!(text.contains("Only a part of the worlds: 1 of 0 to 1."));
     assert!(text.contains("seeds 0 to 1;") && !text.contains("No run failed."));
 }
+
+#[test]
+fn replays_of_an_earlier_report_do_not_stay() {
+    let dir = tempdir().unwrap();
+    let runs = dir.path().join("r/runs");
+    let files = || {
+        let mut names: Vec<String> = fs::read_dir(&runs)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    let bench = |numbers: &str| {
+        sim(dir.path())
+            .args([
+                "bench",
+                "--worlds",
+                "generated:forest",
+                "--numbers",
+                numbers,
+            ])
+            .args(["--controllers", "pure-pursuit", "--time-limit", "1"])
+            .args(["--report", "r"])
+            .assert()
+            .success();
+    };
+    bench("0-1");
+    assert_eq!(files(), ["pure-pursuit-0-0.html", "pure-pursuit-1-0.html"]);
+    let own = [
+        "notes.html",
+        "pure-pursuit-01-0.html",
+        "vfh-1.html",
+        "mine-1-0.html",
+    ];
+    for name in own {
+        fs::write(runs.join(name), "kept").unwrap();
+    }
+    bench("2");
+    let mut wanted = own.map(str::to_owned).to_vec();
+    wanted.push("pure-pursuit-2-0.html".to_owned());
+    wanted.sort();
+    assert_eq!(files(), wanted);
+}

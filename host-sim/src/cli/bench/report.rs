@@ -4,7 +4,7 @@ use crate::cli::put;
 use anyhow::Context;
 use host_sim::bench::attempt::Ending;
 use host_sim::bench::campaign::Campaign;
-use host_sim::bench::controllers::Controller;
+use host_sim::bench::controllers::{CONTROLLERS, Controller};
 use host_sim::bench::recorded::record;
 use host_sim::bench::report::{About, Failure, explain, page, per_world, picture};
 use host_sim::bench::results::Results;
@@ -26,6 +26,7 @@ pub fn write(
     let runs = folder.join("runs");
     std::fs::create_dir_all(&runs)
         .with_context(|| format!("{}: cannot be created", runs.display()))?;
+    remove_earlier(&runs)?;
     let table = super::table::all(results);
     put(&folder.join("table.txt"), table.as_bytes())?;
     put(&folder.join("per-world.csv"), per_world(results).as_bytes())?;
@@ -71,6 +72,38 @@ pub fn write(
         &folder.join("index.html"),
         page(results, &failures, left_out, &about(folder, json)).as_bytes(),
     )
+}
+
+/// Removes the replays of an earlier report: its index is about to be replaced, and nothing would lead to them. Whatever
+/// has another name than a replay's stays.
+fn remove_earlier(runs: &Path) -> anyhow::Result<()> {
+    let entries = std::fs::read_dir(runs);
+    let entries = entries.with_context(|| format!("{}: cannot be read", runs.display()))?;
+    for entry in entries {
+        let path = entry?.path();
+        let name = path.file_name().and_then(|name| name.to_str());
+        if name.is_some_and(is_replay) && path.is_file() {
+            std::fs::remove_file(&path)
+                .with_context(|| format!("{}: cannot be removed", path.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether a file's name is CONTROLLER-WORLD-SEED.html.
+fn is_replay(name: &str) -> bool {
+    let number = |text: &str| {
+        text.parse::<u64>()
+            .is_ok_and(|number| number.to_string() == text)
+    };
+    let Some(stem) = name.strip_suffix(".html") else {
+        return false;
+    };
+    let mut parts = stem.rsplitn(3, '-');
+    let (seed, world, controller) = (parts.next(), parts.next(), parts.next());
+    seed.is_some_and(number)
+        && world.is_some_and(number)
+        && controller.is_some_and(|name| CONTROLLERS.iter().any(|c| c.name == name))
 }
 
 fn about(folder: &Path, json: Option<&Path>) -> About {
