@@ -104,7 +104,8 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize, about: &
     figures(&mut page, results);
     beside(&mut page, results);
     if !failures.is_empty() {
-        legend(&mut page, failures);
+        let planned = results.iter().all(|r| r.conditions.task != "goal");
+        legend(&mut page, failures, planned);
     } else if left_out == 0 {
         page.push_str("<p>No run failed.</p>\n");
     }
@@ -216,7 +217,7 @@ fn figures(page: &mut String, results: &[Results]) {
     table(page, &rows::figures(results), "Figures", "");
     page.push_str(
         "<p class=\"small\">Small print: 95&nbsp;% intervals, worlds resampled. Time: mean of the runs that reached the goal. Least clearance: \
-         median over the runs. Cross-track, from the route that was given, and yaw acceleration: RMS.</p>\n",
+         median over the runs. Cross-track, from the given route or the straight line, and yaw acceleration: RMS.</p>\n",
     );
 }
 
@@ -272,7 +273,7 @@ fn table(page: &mut String, rows: &rows::Table, label: &str, class: &str) {
 }
 
 /// What is seen in the pictures.
-fn legend(page: &mut String, failures: &[Failure]) {
+fn legend(page: &mut String, failures: &[Failure], planned: bool) {
     page.push_str("<p class=\"legend\">");
     for hue in MODES.iter().filter(|hue| hue.mode != "stop") {
         let mode = hue.mode;
@@ -283,7 +284,15 @@ fn legend(page: &mut String, failures: &[Failure]) {
     }
     let any = |of: fn(&Failure) -> bool| failures.iter().any(of);
     for (class, name, shown) in [
-        ("route", "given route", true),
+        (
+            "route",
+            if planned {
+                "given route"
+            } else {
+                "straight line to the goal"
+            },
+            true,
+        ),
         ("goal", "the goal's circle", true),
         ("start", "start", true),
         ("disc", "obstacle", true),

@@ -1,5 +1,6 @@
 //! What the printed tables and the page's say, cell by cell, so that both say the same.
 
+use super::attempt::CLEARANCE_REACH;
 use super::cost::{DeadSensor, DeadSensors};
 use super::results::Results;
 
@@ -54,9 +55,11 @@ fn share(x: f64, [low, high]: [f64; 2]) -> Cell {
     }
 }
 
-/// A least clearance, m: how deep a contact was is the step's doing.
+/// A least clearance, m, as far as it is measured: how deep a contact was is the step's doing.
 fn clearance(x: f64) -> String {
-    if x > 0.0 {
+    if x >= CLEARANCE_REACH {
+        format!("≥ {CLEARANCE_REACH}")
+    } else if x > 0.0 {
         number(x, 3)
     } else {
         "contact".to_owned()
