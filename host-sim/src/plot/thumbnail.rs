@@ -1,12 +1,14 @@
 //! A run in little: the world, the route, the way in the modes' colours and the outline where it ended. For pages with
 //! many runs.
 
-use super::palette::STOP;
+use super::palette::{STOP, hex};
 use super::run::{OBSTACLE, PATH, drawable, thinned, trajectory};
-use super::{INK, Panel, Placer, Point, Rect, document, extent};
+use super::{INK, Panel, Placer, Point, Rect, document, extent, unit, units};
 use crate::recording::{Frame, Recording};
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use plotters::style::{Color, WHITE};
+use std::collections::BTreeMap;
+use std::fmt::Write;
 
 /// Height of the picture, pixels, and its widest.
 const HEIGHT: f64 = 320.0;
@@ -75,20 +77,13 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
         y_name: String::new(),
         x_numbers: false,
     };
-    document(width, height, |canvas| {
+    let mut svg = document(width, height, |canvas| {
         canvas.ring(
             map.at(goal_x, goal_y),
             goal_radius * scale,
             1.2,
             PATH.to_rgba(),
         )?;
-        for disc in drawable(rec) {
-            canvas.disc(
-                map.at(disc.x, disc.y),
-                disc.radius * scale,
-                OBSTACLE.to_rgba(),
-            )?;
-        }
         for (x, y, radius) in hollow() {
             canvas.disc(map.at(x, y), radius * scale, WHITE.to_rgba())?;
             canvas.ring(map.at(x, y), radius * scale, 1.6, INK.to_rgba())?;
@@ -122,5 +117,29 @@ pub fn thumbnail_svg(rec: &Recording, place: &Place<'_>) -> Result<String> {
             }
         }
         Ok(())
-    })
+    })?;
+    let ground = svg.find("/>").context("a picture without a ground")? + "/>".len();
+    svg.insert_str(ground, &dots(rec, &map, scale));
+    Ok(svg.replace(" opacity=\"1\"", ""))
+}
+
+/// What stands still and is mapped, one path for all discs of a size: a world has hundreds of them, and so has every picture. A
+/// line of no length with round ends is a disc.
+fn dots(rec: &Recording, map: &Panel, scale: f64) -> String {
+    let mut sizes: BTreeMap<i32, (String, (i32, i32))> = BTreeMap::new();
+    for disc in drawable(rec) {
+        let at = units(map.at(disc.x, disc.y));
+        let (path, last) = sizes.entry(unit(disc.radius * scale)).or_default();
+        // Short, as from the one before.
+        let _ = write!(path, "m{} {}h0", at.0 - last.0, at.1 - last.1);
+        *last = at;
+    }
+    let paths = sizes.into_iter().map(|(radius, (path, _))| {
+        format!(
+            "\n<path fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" d=\"{path}\"/>",
+            hex(OBSTACLE).to_uppercase(),
+            2 * radius,
+        )
+    });
+    paths.collect()
 }

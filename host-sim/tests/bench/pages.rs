@@ -542,3 +542,24 @@ fn replays_of_an_earlier_report_do_not_stay() {
     wanted.sort();
     assert_eq!(files(), wanted);
 }
+
+#[test]
+fn the_discs_of_a_picture_take_little_room() {
+    let (page, replays) = report(&[
+        "--worlds",
+        "generated:barn",
+        "--numbers",
+        "0",
+        "--controllers",
+        "rpp",
+        "--time-limit",
+        "1",
+    ]);
+    let discs = replays[0].1["obstacles"].as_array().unwrap().len();
+    let picture = page.split_once("<svg").unwrap().1;
+    let picture = picture.split_once("</svg>").unwrap().0;
+    assert!(discs > 100);
+    assert_eq!(picture.matches("h0").count(), discs);
+    assert!(!picture.contains("opacity=\"1\""));
+    assert!(picture.len() < 20 * discs, "{} bytes", picture.len());
+}
