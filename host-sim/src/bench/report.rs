@@ -96,8 +96,7 @@ pub fn page(results: &[Results], failures: &[Failure], left_out: usize, about: &
         if let Some([index, count]) = first.shard {
             let _ = writeln!(
                 page,
-                "<p><b>Only a part of the worlds: {index} of 0 to {}.</b> <code>host-sim merge</code> puts the parts' results together.</p>",
-                count - 1
+                "<p><b>Only part {index}/{count} of the worlds.</b> <code>host-sim merge</code> puts the parts' results together.</p>"
             );
         }
     }
