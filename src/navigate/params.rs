@@ -91,6 +91,17 @@ impl<const N: usize> NavigatorParams<N> {
         })
     }
 
+    /// The least margin of the brake gate: 1 cm, or a quarter of what the outline's farthest place turns in a period. That
+    /// place is looked at twice a period, and half of such a step must not carry it past a point.
+    pub fn least_gate(&self) -> Metres {
+        let turned = RadiansPerSecond::new(self.limits.yaw_rate)
+            .over(self.period)
+            .radians();
+        let swept = self.footprint.outline().reach.metres().scale(turned);
+        // Rounded up.
+        Metres::from_bits((swept.bits() >> 2).saturating_add(1)).max(const { Metres::lit("0.01") })
+    }
+
     /// Whether the robot can be driven with these settings.
     ///
     /// # Errors
@@ -200,21 +211,10 @@ impl<const N: usize> NavigatorParams<N> {
         for (margin, field) in margins {
             range((Metres::ZERO..=most).contains(&margin), field, "0 to 0.5 m")?;
         }
-        // With less, rounding decides.
         range(
-            (const { Metres::lit("0.01") }..=most).contains(&self.barrier.gate),
+            (self.least_gate()..=most).contains(&self.barrier.gate),
             "barrier.gate",
-            "0.01 to 0.5 m",
-        )?;
-        // A turning corner's way is looked at twice a period: half of such a step must not carry it past a point.
-        let turned = RadiansPerSecond::new(limits.yaw_rate)
-            .over(self.period)
-            .radians();
-        let swept = self.footprint.outline().reach.metres().scale(turned);
-        range(
-            swept.bits() >> 2 <= self.barrier.gate.bits(),
-            "barrier.gate",
-            "a quarter of what the outline's farthest place turns in a period, or more",
+            "0.01 to 0.5 m, and no less than NavigatorParams::least_gate",
         )
     }
 }

@@ -73,6 +73,8 @@ impl Ours {
         params.reverse = si::speed(limits.reverse);
         params.period = si::seconds(mission.period);
         params.latency = si::seconds(mission.latency);
+        // A larger body's corners sweep more.
+        params.barrier.gate = params.barrier.gate.max(params.least_gate());
         let (sensors, beams) = sensors(&mission.sensors, &params.sensors);
         params.sensors = sensors;
         let setup = params.setup().expect("the mission's robot can be driven");

@@ -258,9 +258,14 @@ fn figures(of: &str, said: &Figures, worlds: &[WorldResult]) -> Result<(), Strin
         ("timeout", said.timeout, are.timeout),
         ("blocked", said.blocked, are.blocked),
         ("score", said.score, are.score),
-        ("mean_time_s", said.mean_time_s, are.mean_time_s),
+        // None where nobody arrived.
+        (
+            "mean_time_s",
+            said.mean_time_s.unwrap_or(f64::NAN),
+            are.mean_time_s.unwrap_or(f64::NAN),
+        ),
     ];
-    let same = |said: f64, is: f64| (said - is).abs() <= 1e-9;
+    let same = |said: f64, is: f64| (said - is).abs() <= 1e-9 || (said.is_nan() && is.is_nan());
     match pairs.into_iter().find(|(_, said, is)| !same(*said, *is)) {
         None => Ok(()),
         Some((name, said, is)) => Err(format!(

@@ -219,7 +219,7 @@ fn setup(log: &Log, settings: &Settings) -> Result<Setup<SECTORS>, ParamError> {
     };
     let reach = scans().map(|scan| scan.max_range).fold(0.0, f64::max);
     let place = Point::new(si::metres(log.mount[0]), si::metres(log.mount[1]));
-    NavigatorParams {
+    let mut params = NavigatorParams {
         footprint: settings.footprint.clone(),
         limits: fuzzypilot::params::Limits {
             speed: si::speed(settings.speed),
@@ -234,8 +234,10 @@ fn setup(log: &Log, settings: &Settings) -> Result<Setup<SECTORS>, ParamError> {
             preset.sensors.max_age,
         ),
         ..preset
-    }
-    .setup()
+    };
+    // A larger body's corners sweep more.
+    params.barrier.gate = params.barrier.gate.max(params.least_gate());
+    params.setup()
 }
 
 /// Name of a manoeuvre, for tables and pictures.

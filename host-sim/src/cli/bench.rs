@@ -244,7 +244,9 @@ fn arenas(
         }
         (Some(file), Task::Unmapped) => {
             worlds::check::check(&arguments.worlds, &arenas, body)?;
-            unmapped::add(file, &arguments.worlds, &mut arenas, body)?;
+            if let Some(odd) = unmapped::add(file, &arguments.worlds, &mut arenas, body)? {
+                eprintln!("note: {odd}");
+            }
         }
         (None, Task::Unmapped) => {
             return Err(BadInput(

@@ -30,19 +30,26 @@ const FREE: f64 = 1.2;
 const THROWS: usize = 200;
 
 /// Adds the file's cylinders to their worlds, which come from `place` and are fit for `body` without them. Every world must
-/// get some, so that none is driven as if it were mapped; lines of others that are in that place are for other choices.
-pub fn add(file: &Path, place: &str, arenas: &mut [Arena], body: &Body) -> Result<(), WorldError> {
+/// get some, so that none is driven as if it were mapped; lines of others are for other choices. Returns what is odd about
+/// them: a world that is not in that place, if one is meant.
+pub fn add(
+    file: &Path,
+    place: &str,
+    arenas: &mut [Arena],
+    body: &Body,
+) -> Result<Option<String>, WorldError> {
     let cylinders = read(file)?;
     let at = |line: u64| format!("{}:{line}", file.display());
-    if let Some(there) = super::numbers_in(place)? {
-        let stray = cylinders
-            .iter()
-            .find(|(_, world, _)| !there.contains(world));
-        if let Some((line, world, _)) = stray {
-            let found = format!("world {world}, which is not in {place}");
-            return Err(WorldError::wrong(at(*line), found, "worlds that are there"));
-        }
-    }
+    let there = super::numbers_in(place)?;
+    let stray = cylinders
+        .iter()
+        .find(|(_, world, _)| there.as_ref().is_some_and(|there| !there.contains(world)))
+        .map(|(line, world, _)| {
+            format!(
+                "{}: world {world} is not in {place}; its lines are not used",
+                at(*line)
+            )
+        });
     let own = |number: u32| {
         cylinders
             .iter()
@@ -86,7 +93,8 @@ pub fn add(file: &Path, place: &str, arenas: &mut [Arena], body: &Body) -> Resul
             }
         }
         Ok(())
-    })
+    })?;
+    Ok(stray)
 }
 
 /// A file's cylinders, each with its line and its world.
