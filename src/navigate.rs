@@ -5,7 +5,7 @@
 //!  echoes ─▶ memory ─▶ near ─▶ polar map ─▶ supervise ─▶ follow: fine tables      ─▶ barrier ─▶ twist
 //!  pose              predicted  feasible                  avoid:  field, heading,     arc,
 //!                    body       headings                          coarse tables       brake gate
-//!                                                         escape: short arcs
+//!                                                         escape: back, arcs
 //! ```
 //!
 //! With what is left of a tick then the [guide field](Field) for the next one is worked out.

@@ -27,7 +27,7 @@ pub enum Manoeuvre {
     /// Among obstacles, by map, guide field and coarse tables.
     #[default]
     Avoid,
-    /// Out of a place where nothing is admissible: back, or turning.
+    /// Out of a place where nothing is admissible: back the way that it came, along another short arc, or turning.
     Escape,
     /// Stands and says so: there is no way on. For a pause at first, then it tries again; in the end for good, until
     /// [`Navigator::resume`](super::Navigator::resume).
