@@ -36,7 +36,8 @@ use fixed::types::I16F16;
 ///   v²/2a and the margin ahead of it;
 /// * the settings are such as [`NavigatorParams::setup`](super::NavigatorParams::setup) takes: both brakes stop the robot
 ///   within 23 periods, the latency is two periods at most, no period is longer than 0.1 s or drives farther than 0.15 m, the
-///   gate's margin is 1 cm or more.
+///   gate's margin is no less than [`NavigatorParams::least_gate`](super::NavigatorParams::least_gate);
+/// * the outline is wider than what two periods drive: a smaller one may pass a point between two places of a way.
 ///
 /// Then no known point is touched: if the command passed last period, braking in full now is the tail of the way that was
 /// found clear then. It is found again in other steps of half a period and of 0.24 mm and may then not seem clear; where
@@ -201,16 +202,22 @@ fn limit_turning(twist: Twist, room: (Angle, Angle)) -> Twist {
     }
 }
 
-/// A twist without what moves the outline by less than half a millimetre in a period: poses are told apart by half of that.
+/// A twist that moves the outline by less than half a millimetre in a period, made so much faster that it does: poses are told
+/// apart by half of that.
 fn felt(brakes: Brakes, outline: &Outline, twist: Twist) -> Twist {
     const LEAST: Steps = Steps::from_bits(2);
     let forth = Steps::of(twist.linear.over(brakes.period).abs());
     let turn = twist.angular.over(brakes.period).abs().radians();
     let swept = Steps::of(outline.reach.metres().scale(turn));
-    let kept = |moved: Steps, part: i32| if moved < LEAST { 0 } else { part };
+    if forth >= LEAST || swept >= LEAST {
+        return twist;
+    }
+    let linear = ratio(LEAST.metres().bits(), 1 << 24, brakes.period.bits());
+    let angular = ratio(linear, 1 << 12, outline.reach.bits());
+    let faster = |part: i32, least: i32| part.signum().wrapping_mul(least.saturating_add(1));
     Twist {
-        linear: MetresPerSecond::from_bits(kept(forth, twist.linear.bits())),
-        angular: RadiansPerSecond::from_bits(kept(swept, twist.angular.bits())),
+        linear: MetresPerSecond::from_bits(faster(twist.linear.bits(), linear)),
+        angular: RadiansPerSecond::from_bits(faster(twist.angular.bits(), angular)),
     }
 }
 
@@ -241,17 +248,12 @@ pub fn gate(
     };
     way.looked = 0;
     let mut met = None;
-    // What would be lost in rounding would creep up to a point, period after period.
     let close = near.clearance() < margin;
-    let felt = |twist: Twist| {
+    let mut passes = |way: &mut Trajectory, mut twist: Twist| {
+        // What is lost in rounding would creep up to a point, period after period.
         if close {
-            felt(brakes, outline, twist)
-        } else {
-            twist
+            twist = felt(brakes, outline, twist);
         }
-    };
-    let wanted = felt(wanted);
-    let mut passes = |way: &mut Trajectory, twist: Twist| {
         way.brake(driven, twist, brakes);
         met = way.touches(near, outline, margin, met);
         met.is_none()
@@ -265,7 +267,7 @@ pub fn gate(
     }
     for index in 0..4 {
         let (linear, angular) = gentler(index);
-        let twist = felt(brakes.toward(driven, Twist { linear, angular }));
+        let twist = brakes.toward(driven, Twist { linear, angular });
         if passes(way, twist) {
             return Guarded {
                 twist,

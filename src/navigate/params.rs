@@ -91,15 +91,14 @@ impl<const N: usize> NavigatorParams<N> {
         })
     }
 
-    /// The least margin of the brake gate: 1 cm, or a quarter of what the outline's farthest place turns in a period. That
-    /// place is looked at twice a period, and half of such a step must not carry it past a point.
+    /// The least margin of the brake gate: 1 cm, or three tenths of what the outline's farthest place turns in a period. That
+    /// place is looked at twice a period: half of such a step must not carry it past a point, and it drives on meanwhile.
     pub fn least_gate(&self) -> Metres {
-        let turned = RadiansPerSecond::new(self.limits.yaw_rate)
-            .over(self.period)
-            .radians();
+        let turned = I16F16::from_bits(per(self.limits.yaw_rate, self.period).bits());
         let swept = self.footprint.outline().reach.metres().scale(turned);
         // Rounded up.
-        Metres::from_bits((swept.bits() >> 2).saturating_add(1)).max(const { Metres::lit("0.01") })
+        let share = swept.scale(const { I16F16::lit("0.3") });
+        Metres::from_bits(share.bits().saturating_add(1)).max(const { Metres::lit("0.01") })
     }
 
     /// Whether the robot can be driven with these settings.
@@ -150,6 +149,11 @@ impl<const N: usize> NavigatorParams<N> {
             "limits.speed",
             "up to 0.15 m a period",
         )?;
+        range(
+            self.reverse.over(self.period) <= const { Metres::lit("0.151") },
+            "reverse",
+            "up to 0.15 m a period",
+        )?;
         // Braking is followed to its end only then; a period's part of it is rounded.
         let stops = |most: i32, rate: I16F16| {
             let braked = i64::from(per(rate, self.period).bits()).wrapping_mul(BRAKING);
@@ -159,6 +163,11 @@ impl<const N: usize> NavigatorParams<N> {
             stops(limits.speed.bits(), limits.acceleration),
             "limits.acceleration",
             "enough to stop from limits.speed in 23 periods",
+        )?;
+        range(
+            stops(self.reverse.bits(), limits.acceleration),
+            "reverse",
+            "what limits.acceleration stops in 23 periods",
         )?;
         range(
             stops(limits.yaw_rate.to_bits(), limits.yaw_acceleration),

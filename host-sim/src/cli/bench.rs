@@ -181,6 +181,15 @@ fn nothing_lost(arguments: &BenchArguments) -> Result<(), BadInput> {
     if let Some(file) = &arguments.json {
         not_what_is_read("--json", file, &read)?;
     }
+    if let (Some(file), Some(folder)) = (&arguments.json, &arguments.report)
+        && report::writes(folder, file)
+    {
+        return Err(BadInput(format!(
+            "--json {}: --report {} writes there; allowed is another file",
+            file.display(),
+            folder.display()
+        )));
+    }
     match &arguments.report {
         Some(folder) => none_of_what_is_read("--report", folder, &report::FILES, &read),
         None => Ok(()),

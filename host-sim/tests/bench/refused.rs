@@ -620,3 +620,50 @@ fn the_document_s_own_world_can_be_driven() {
         assert_eq!(results[0]["success"], 1.0, "{task}");
     }
 }
+
+#[test]
+fn results_do_not_overwrite_each_other() {
+    let dir = tempdir().unwrap();
+    let barn = ours("generated:barn");
+    for json in [
+        "page",
+        "./page/index.html",
+        "page/table.txt",
+        "page/runs/a.json",
+    ] {
+        let places = ["--json", json, "--report", "page"];
+        let arguments = [&barn[..], &places[..]].concat();
+        refused_with(
+            dir.path(),
+            &arguments,
+            &[json, "--report page writes there"],
+        );
+    }
+    assert!(!dir.path().join("page").exists());
+    let places = ["--json", "page/all.json", "--report", "page"];
+    sim(dir.path()).args(&barn).args(places).assert().success();
+}
+
+#[test]
+fn a_world_has_a_way_and_is_there_once() {
+    let dir = tempdir().unwrap();
+    let common = r#"{"start": [0, 0, 0], "goal": [8, 0], "goal_radius": 1, "cyl_radius": 0.1, "common_cylinders_xy": []}"#;
+    fs::write(dir.path().join("common.json"), common).unwrap();
+    let world = "{\"w\": 1, \"cyl\": [[4, 3]], \"path\": []}";
+    fs::write(dir.path().join("one.jsonl"), world).unwrap();
+    let parts = [
+        "one.jsonl:1: found a path without a point",
+        "one point or more",
+    ];
+    refused_with(dir.path(), &ours("one.jsonl"), &parts);
+    for name in ["raw/world_1.world", "raw/world_files/world_1.world"] {
+        let file = dir.path().join(name);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(file, "<sdf/>").unwrap();
+    }
+    refused_with(
+        dir.path(),
+        &ours("raw"),
+        &["found world 1 in raw", "every world once"],
+    );
+}

@@ -45,6 +45,13 @@ pub fn read_lines(file: &Path) -> Result<Vec<Arena>, WorldError> {
             serde_json::from_str(line).map_err(|e| malformed(file, index + 1, &e, WORLD))?;
         check(&place, &read.cyl)?;
         check(&place, &read.path)?;
+        if read.path.is_empty() {
+            return Err(WorldError::wrong(
+                place,
+                "a path without a point",
+                "one point or more, between start and goal",
+            ));
+        }
         if arenas.iter().any(|a| a.number == read.w) {
             return Err(WorldError::wrong(
                 place,

@@ -54,6 +54,19 @@ pub fn read_folder(folder: &Path, numbers: &Numbers) -> Result<Vec<Arena>, World
 pub fn all_worlds(folder: &Path) -> Result<Vec<(u32, PathBuf)>, WorldError> {
     let mut found = worlds_in(folder)?;
     found.extend(worlds_in(&folder.join("world_files")).unwrap_or_default());
+    found.sort();
+    let twice = found.windows(2).find(|pair| pair[0].0 == pair[1].0);
+    if let Some([(number, first), (_, second)]) = twice {
+        return Err(WorldError::wrong(
+            folder.display().to_string(),
+            format!(
+                "world {number} in {} and in {}",
+                first.display(),
+                second.display()
+            ),
+            "every world once",
+        ));
+    }
     if !found.is_empty() {
         return Ok(found);
     }

@@ -14,6 +14,15 @@ use std::path::Path;
 /// What [`write`] makes beside `runs`.
 pub const FILES: [&str; 3] = ["table.txt", "per-world.csv", "index.html"];
 
+/// Whether a report in `folder` is, or writes or removes, a file.
+pub fn writes(folder: &Path, file: &Path) -> bool {
+    let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let (folder, file) = (whole(folder), whole(file));
+    folder == file
+        || file.starts_with(folder.join("runs"))
+        || FILES.iter().any(|name| folder.join(name) == file)
+}
+
 /// Writes `table.txt`, `per-world.csv`, `runs/*.html` and last of all `index.html`.
 pub fn write(
     folder: &Path,
