@@ -581,6 +581,15 @@ fn settings_that_cannot_be_driven_with_are_named() {
         refused(|p| p.limits.yaw_acceleration = I16F16::lit("2.5")),
         "limits.yaw_acceleration"
     );
+    assert_eq!(
+        refused(|p| p.reverse = MetresPerSecond::lit("3.1")),
+        "reverse"
+    );
+    // The gate's margin goes with what the corners sweep: the Jackal's 15 mm with 3 rad/s.
+    assert_eq!(
+        refused(|p| p.limits.yaw_rate = I16F16::lit("3.1")),
+        "barrier.gate"
+    );
     let taken = |change: fn(&mut NavigatorParams<16>)| {
         let mut params = presets::jackal::<16>();
         change(&mut params);

@@ -1,6 +1,7 @@
 //! What the report's pages show: the run's end, what moves, colours, words and figures.
 
 use super::command::sim;
+use crate::runs::open_ground;
 use host_sim::bench::arena::{Arena, Circle, Mover};
 use host_sim::bench::attempt::{Dead, Ending, Setting};
 use host_sim::bench::body::{Body, BodyFrame, JACKAL};
@@ -20,16 +21,8 @@ use tempfile::tempdir;
 /// A straight way of 6 m past some circles.
 fn ground(circles: Vec<Circle>, movers: Vec<Mover>) -> Arena {
     Arena {
-        number: 1,
-        circles,
-        unmapped: 0,
         movers,
-        start: [0.0; 3],
-        goal: [6.0, 0.0],
-        goal_radius: 0.5,
-        sealed: false,
-        route: vec![[0.0, 0.0], [6.0, 0.0]],
-        course: None,
+        ..open_ground(circles)
     }
 }
 

@@ -13,7 +13,7 @@ use host_sim::bench::sensors;
 use host_sim::bench::worlds::load;
 use host_sim::bench::worlds::numbers::Numbers;
 
-fn open_ground(circles: Vec<Circle>) -> Arena {
+pub fn open_ground(circles: Vec<Circle>) -> Arena {
     Arena {
         number: 1,
         circles,
