@@ -54,6 +54,43 @@ fn a_search_that_could_find_nothing_is_refused() {
 }
 
 #[test]
+fn worlds_of_several_places_are_driven_each_with_its_numbers() {
+    let folder = tempdir().unwrap();
+    let out = folder.path().join("out");
+    let places = ["--worlds", "generated:barn", "--worlds", "generated:slalom"];
+    tune(&places)
+        .args([
+            "--numbers",
+            "1",
+            "--numbers",
+            "2",
+            "--task",
+            "goal",
+            "--only",
+        ])
+        .args(["steer.rate,barrier.share", "--evaluations", "6", "--out"])
+        .arg(&out)
+        .assert()
+        .success()
+        .stdout(contains("goal 1 m/s, generated:barn 1").and(contains("generated:slalom 2")));
+    let module = std::fs::read_to_string(out.join("tuned.rs")).unwrap();
+    let command =
+        "--worlds generated:barn --worlds generated:slalom --numbers 1 --numbers 2 --task";
+    assert!(module.contains(command), "{module}");
+    tune(&["--numbers", "1", "--numbers", "2"])
+        .assert()
+        .code(2)
+        .stderr(contains(
+            "--numbers: found 2 lists for 1 places; allowed is one for all, or one for each",
+        ));
+    tune(&places)
+        .args(["--numbers", "1", "--numbers", "12"])
+        .assert()
+        .code(2)
+        .stderr(contains("--numbers 12: found world 12"));
+}
+
+#[test]
 fn settings_that_do_not_exist_are_named() {
     tune(&["--only", "steer.raet"])
         .assert()

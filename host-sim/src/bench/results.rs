@@ -3,7 +3,7 @@
 use super::attempt::{Ending, Outcome};
 use super::campaign::Run;
 use super::cost::{DeadSensors, Sound};
-use super::statistics::{bootstrap, median, wilson};
+use super::statistics::{Resampling, median, wilson};
 use super::tracking::{Tracked, pooled};
 use serde::{Deserialize, Serialize};
 
@@ -90,6 +90,18 @@ pub struct Intervals {
     pub collision_worlds: [f64; 2],
     /// Of `score`, likewise.
     pub score_worlds: [f64; 2],
+    /// Of `mean_time_s`, likewise; none if no run arrived.
+    #[serde(default)]
+    pub mean_time_s_worlds: Option<[f64; 2]>,
+    /// Of `median_min_clearance_m`, likewise.
+    #[serde(default)]
+    pub median_min_clearance_m_worlds: [f64; 2],
+    /// Of `cross_track_rms_m`, likewise.
+    #[serde(default)]
+    pub cross_track_rms_m_worlds: [f64; 2],
+    /// Of `omega_rate_rms`, likewise.
+    #[serde(default)]
+    pub omega_rate_rms_worlds: [f64; 2],
 }
 
 /// A run in a world's list.
@@ -224,6 +236,53 @@ pub fn by_world(runs: &[Run]) -> Vec<WorldResult> {
         .collect()
 }
 
+impl Intervals {
+    fn of(outcomes: &[Outcome], per_world: &[WorldResult]) -> Self {
+        let resampling = Resampling::new(per_world.len());
+        let mean = |of: fn(&Outcome) -> f64, among: fn(&Outcome) -> bool| {
+            let sums: Vec<(f64, usize)> = per_world
+                .iter()
+                .map(|world| {
+                    let runs = world.attempts.iter().map(|a| &a.outcome);
+                    let runs = runs.filter(|o| among(o));
+                    runs.fold((0.0, 0), |(sum, n), o| (sum + of(o), n + 1))
+                })
+                .collect();
+            resampling.mean(&sums)
+        };
+        let share = |of: fn(&Outcome) -> bool| {
+            let hits: Vec<(f64, usize)> = per_world
+                .iter()
+                .map(|world| {
+                    let hits = world.attempts.iter().filter(|a| of(&a.outcome)).count();
+                    (hits as f64, world.attempts.len())
+                })
+                .collect();
+            resampling.mean(&hits)
+        };
+        let reached = |o: &Outcome| o.ending == Ending::Reached;
+        let touched = |o: &Outcome| o.ending == Ending::Collision;
+        let count = |of: fn(&Outcome) -> bool| outcomes.iter().filter(|o| of(o)).count();
+        let clearances = per_world.iter().enumerate().flat_map(|(place, world)| {
+            let runs = world.attempts.iter();
+            runs.map(move |a| (a.outcome.min_clearance_m, place))
+        });
+        // A root keeps the order.
+        let root = |interval: [f64; 2]| interval.map(f64::sqrt);
+        Self {
+            success: wilson(count(reached), outcomes.len()),
+            collision: wilson(count(touched), outcomes.len()),
+            success_worlds: share(reached),
+            collision_worlds: share(touched),
+            score_worlds: mean(|o| o.score, |_| true),
+            mean_time_s_worlds: (count(reached) > 0).then(|| mean(|o| o.time_s, reached)),
+            median_min_clearance_m_worlds: resampling.median(clearances.collect()),
+            cross_track_rms_m_worlds: root(mean(|o| o.cross_track_rms_m.powi(2), |_| true)),
+            omega_rate_rms_worlds: root(mean(|o| o.omega_rate_rms.powi(2), |_| true)),
+        }
+    }
+}
+
 impl Results {
     /// Of worlds' results, and of the same worlds' with a sound robot if they were driven, too.
     pub fn of(
@@ -236,24 +295,7 @@ impl Results {
             .iter()
             .flat_map(|w| w.attempts.iter().map(|a| a.outcome))
             .collect();
-        let resampled = |of: fn(&Outcome) -> f64| {
-            let sums: Vec<(f64, usize)> = per_world
-                .iter()
-                .map(|w| {
-                    let sum = w.attempts.iter().map(|a| of(&a.outcome)).sum();
-                    (sum, w.attempts.len())
-                })
-                .collect();
-            bootstrap(&sums)
-        };
-        let count = |ending| outcomes.iter().filter(|o| o.ending == ending).count();
-        let intervals_95 = Intervals {
-            success: wilson(count(Ending::Reached), outcomes.len()),
-            collision: wilson(count(Ending::Collision), outcomes.len()),
-            success_worlds: resampled(|o| f64::from(u8::from(o.ending == Ending::Reached))),
-            collision_worlds: resampled(|o| f64::from(u8::from(o.ending == Ending::Collision))),
-            score_worlds: resampled(|o| o.score),
-        };
+        let intervals_95 = Intervals::of(&outcomes, &per_world);
         let figures = Figures::of(&outcomes);
         let sound = sound.map(|worlds| Sound::new(&figures, worlds));
         Self {

@@ -48,11 +48,15 @@ fn per_cent(share: f64) -> String {
     number(100.0 * share, 1)
 }
 
-fn share(x: f64, [low, high]: [f64; 2]) -> Cell {
-    Cell {
-        text: per_cent(x),
-        interval: Some(format!("{}–{}", per_cent(low), per_cent(high))),
-    }
+fn share(x: f64, interval: [f64; 2]) -> Cell {
+    between(per_cent(x), interval, per_cent)
+}
+
+/// A figure with its interval, none where that says no more than the figure.
+fn between(text: String, interval: [f64; 2], show: impl Fn(f64) -> String) -> Cell {
+    let [low, high] = interval.map(show);
+    let interval = (low != text || high != text).then(|| format!("{low}–{high}"));
+    Cell { text, interval }
 }
 
 /// A least clearance, m, as far as it is measured: how deep a contact was is the step's doing.
@@ -78,16 +82,28 @@ pub fn figures(results: &[Results]) -> Table {
             per_cent(f.timeout).into(),
             per_cent(f.blocked).into(),
             per_cent(f.out_or_blocked).into(),
-            Cell {
-                text: number(f.score, 4),
-                interval: Some(format!("{:.3}–{:.3}", i.score_worlds[0], i.score_worlds[1])),
+            between(number(f.score, 4), i.score_worlds, |x| number(x, 4)),
+            match (f.mean_time_s, i.mean_time_s_worlds) {
+                (Some(time), Some(interval)) => {
+                    between(number(time, 1), interval, |x| number(x, 1))
+                }
+                (time, _) => time
+                    .map_or_else(|| NONE.to_owned(), |time| number(time, 1))
+                    .into(),
             },
-            f.mean_time_s
-                .map_or_else(|| NONE.to_owned(), |time| number(time, 1))
-                .into(),
-            clearance(f.median_min_clearance_m).into(),
-            number(f.cross_track_rms_m, 3).into(),
-            number(f.omega_rate_rms, 1).into(),
+            between(
+                clearance(f.median_min_clearance_m),
+                i.median_min_clearance_m_worlds,
+                clearance,
+            ),
+            between(
+                number(f.cross_track_rms_m, 3),
+                i.cross_track_rms_m_worlds,
+                |x| number(x, 3),
+            ),
+            between(number(f.omega_rate_rms, 1), i.omega_rate_rms_worlds, |x| {
+                number(x, 1)
+            }),
             number(f.longest_stall_s, 1).into(),
             f.stalls.to_string().into(),
         ]

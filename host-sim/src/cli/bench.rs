@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 pub struct BenchArguments {
     /// Where the worlds are: BARN's as a folder (world_N.world, path_files/path_N.npy) or as JSON lines (.jsonl, .jsonl.gz,
     /// with common.json beside it), one of your own (.toml), or generated:KIND with KIND one of barn, corridor, rooms,
-    /// slalom, forest, moving, u-trap, sealed, and options such as generated:barn,fill=0.2,smooth=3,radius=0.36; or generated:routes,
+    /// slalom, forest, moving, u-trap, sealed, closed, and options such as generated:barn,fill=0.2,smooth=3,radius=0.36; or generated:routes,
     /// eight routes to follow.
     #[arg(long, value_name = "PLACE")]
     worlds: String,

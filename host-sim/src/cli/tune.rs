@@ -9,6 +9,7 @@ use super::{
 };
 use clap::Args;
 use comfy_table::Cell;
+use host_sim::bench::arena::Arena;
 use host_sim::bench::attempt::Setting;
 use host_sim::bench::body::JACKAL;
 use host_sim::bench::campaign::Campaign;
@@ -35,7 +36,7 @@ Cost: the mean over all campaigns of the mean over all runs of: 0.5 - score; plu
 collision; plus 0.01 a rad/s² of RMS yaw acceleration above 2; plus 0.3 a metre of clearance below 0.15 m; plus 0.02 a second \
 above 4.8 s without progress.
 
-Every task is driven at every speed. Worlds whose number is divisible by 6 are the benchmark's test set: they are refused.
+Every task is driven at every speed in the worlds of every place: each is a campaign. Worlds whose number is divisible by 6 are the benchmark's test set: they are refused.
 
 Files in DIR: tuned.rs (as src/navigate/presets has it), report.json, state.json (after every generation; --resume goes on \
 from it: same result as without the break).
@@ -43,12 +44,12 @@ from it: same result as without the break).
 Exit code: 0; 1 if something cannot be written; 2 if the input is at fault; 130 if interrupted (Ctrl-C: the state and the \
 best so far are written).")]
 pub struct TuneArguments {
-    /// Where the worlds are, as for `bench`.
+    /// Where the worlds are, as for `bench`; may be given several times.
     #[arg(long, value_name = "PLACE", default_value = "generated:barn")]
-    worlds: String,
-    /// Which of them, as for `bench`.
+    worlds: Vec<String>,
+    /// Which of them, as for `bench`; once for all places, or once for each in their order.
     #[arg(long, value_name = "LIST", default_value = "dev")]
-    numbers: String,
+    numbers: Vec<String>,
     /// What is driven: path, goal, unmapped (with three cylinders on every path that it does not know).
     #[arg(long, value_enum, value_name = "TASK,…", value_delimiter = ',', default_values_t = [Task::Goal, Task::Path, Task::Unmapped])]
     task: Vec<Task>,
@@ -186,7 +187,11 @@ pub fn execute(arguments: &TuneArguments) -> anyhow::Result<()> {
 
 /// Refuses results in the place of what is read. Only the state that is gone on from has its successor there.
 fn nothing_lost(arguments: &TuneArguments) -> Result<(), BadInput> {
-    let worlds = of_worlds(&arguments.worlds);
+    let worlds: Vec<PathBuf> = arguments
+        .worlds
+        .iter()
+        .flat_map(|place| of_worlds(place))
+        .collect();
     let mut read: Vec<(&str, &Path)> = Vec::new();
     read.extend(
         worlds
@@ -199,52 +204,81 @@ fn nothing_lost(arguments: &TuneArguments) -> Result<(), BadInput> {
     none_of_what_is_read("--out", &arguments.out, &[MODULE, REPORT], &read)
 }
 
-/// Every task at every speed.
+/// Every task at every speed in the worlds of every place.
 fn campaigns(
     arguments: &TuneArguments,
     views: &[host_sim::recording::BeamView],
 ) -> anyhow::Result<Vec<(String, Campaign)>> {
-    let numbers = Numbers::parse(&arguments.numbers)
-        .map_err(|why| BadInput(format!("--numbers {}: {why}", arguments.numbers)))?;
-    let arenas = worlds::load(&arguments.worlds, &numbers, &JACKAL)?;
+    let places = places(arguments)?;
+    let mut campaigns = Vec::new();
+    for (place, numbers) in &places {
+        let arenas = arenas(place, numbers)?;
+        for task in &arguments.task {
+            let mut arenas = arenas.clone();
+            if *task == Task::Unmapped {
+                unmapped::place(&mut arenas);
+            }
+            for speed in &arguments.speed {
+                let campaign = Campaign {
+                    arenas: arenas.clone(),
+                    seeds: (0..arguments.seeds).collect(),
+                    setting: Setting::new(views.to_vec(), *speed, task.planned()),
+                };
+                let mut name = format!("{} {speed} m/s", task.name());
+                if places.len() > 1 {
+                    name += &format!(", {} {numbers}", without_folders(place));
+                }
+                campaigns.push((name, campaign));
+            }
+        }
+    }
+    Ok(campaigns)
+}
+
+/// The places of worlds and the numbers of each.
+fn places(arguments: &TuneArguments) -> Result<Vec<(&str, &str)>, BadInput> {
+    let (places, numbers) = (&arguments.worlds, &arguments.numbers);
+    let each = numbers.len();
+    if each != 1 && each != places.len() {
+        return Err(BadInput(format!(
+            "--numbers: found {each} lists for {} places; allowed is one for all, or one for each",
+            places.len()
+        )));
+    }
+    let lists = numbers.iter().cycle();
+    let pairs = places.iter().zip(lists);
+    Ok(pairs
+        .map(|(place, list)| (place.as_str(), list.as_str()))
+        .collect())
+}
+
+/// The worlds of a place that may be tuned on.
+fn arenas(place: &str, list: &str) -> anyhow::Result<Vec<Arena>> {
+    let numbers =
+        Numbers::parse(list).map_err(|why| BadInput(format!("--numbers {list}: {why}")))?;
+    let arenas = worlds::load(place, &numbers, &JACKAL)?;
     if let Some(test) = arenas.iter().find(|arena| is_test(arena.number)) {
         return Err(BadInput(format!(
-            "--numbers {}: found world {}, which is of the test set; allowed are numbers not divisible by 6, such as dev",
-            arguments.numbers, test.number
+            "--numbers {list}: found world {}, which is of the test set; allowed are numbers not divisible by 6, such as dev",
+            test.number
         ))
         .into());
     }
     if arenas.is_empty() {
         return Err(BadInput(format!(
-            "--numbers {}: no such world in {}; allowed are numbers that are there",
-            arguments.numbers, arguments.worlds
+            "--numbers {list}: no such world in {place}; allowed are numbers that are there"
         ))
         .into());
     }
     if let Some(sealed) = arenas.iter().find(|arena| arena.sealed) {
         return Err(BadInput(format!(
-            "--worlds {}: world {} is sealed, no settings arrive there; allowed are worlds with a way to the goal",
-            arguments.worlds, sealed.number
+            "--worlds {place}: world {} is sealed, no settings arrive there; allowed are worlds with a way to the goal",
+            sealed.number
         ))
         .into());
     }
-    worlds::check::check(&arguments.worlds, &arenas, &JACKAL)?;
-    let mut campaigns = Vec::new();
-    for task in &arguments.task {
-        let mut arenas = arenas.clone();
-        if *task == Task::Unmapped {
-            unmapped::place(&mut arenas);
-        }
-        for speed in &arguments.speed {
-            let campaign = Campaign {
-                arenas: arenas.clone(),
-                seeds: (0..arguments.seeds).collect(),
-                setting: Setting::new(views.to_vec(), *speed, task.planned()),
-            };
-            campaigns.push((format!("{} {speed} m/s", task.name()), campaign));
-        }
-    }
-    Ok(campaigns)
+    worlds::check::check(place, &arenas, &JACKAL)?;
+    Ok(arenas)
 }
 
 fn chosen(arguments: &TuneArguments) -> Result<Vec<&'static Knob>, BadInput> {
@@ -301,10 +335,15 @@ fn list(start: &Tuned, knobs: &[&Knob]) -> anyhow::Result<()> {
 /// The command on one line, without folders. Whether it was resumed makes no difference.
 fn command(arguments: &TuneArguments) -> String {
     let list = |texts: Vec<String>| texts.join(",");
+    let places = arguments.worlds.iter();
+    let places = places.map(|place| format!(" --worlds {}", without_folders(place)));
+    let numbers = arguments
+        .numbers
+        .iter()
+        .map(|list| format!(" --numbers {list}"));
     let mut command = format!(
-        "host-sim tune --worlds {} --numbers {} --task {} --sensors {} --speed {} --seeds {}",
-        arguments.worlds.rsplit('/').next().unwrap_or_default(),
-        arguments.numbers,
+        "host-sim tune{} --task {} --sensors {} --speed {} --seeds {}",
+        places.chain(numbers).collect::<String>(),
         list(
             arguments
                 .task
@@ -326,6 +365,11 @@ fn command(arguments: &TuneArguments) -> String {
             " --seed {} --sigma {} --evaluations {}",
             arguments.seed, arguments.sigma, arguments.evaluations
         )
+}
+
+/// The end of a place's path.
+fn without_folders(place: &str) -> &str {
+    place.rsplit('/').next().unwrap_or_default()
 }
 
 /// What came of it; pairs are before and after.

@@ -271,6 +271,6 @@ fn one_s_own_world_is_driven_and_a_sealed_one_is_no_error() {
             .args(["--controllers", "bendy", "--time-limit", "15"])
             .assert()
             .success()
-            .stdout(predicate::str::contains(format!("{share} (")));
+            .stdout(predicate::str::contains(format!("┆ {share} ")));
     }
 }

@@ -70,6 +70,11 @@ pub const KINDS: &[Kind] = &[
         about: "a room without a door; the robot ought to say so",
         make: traps::sealed,
     },
+    Kind {
+        name: "closed",
+        about: "a narrow corridor that is closed at both ends, with the robot inside; it ought to say so",
+        make: traps::closed,
+    },
 ];
 
 /// What may be chosen; every kind takes what concerns it.

@@ -32,7 +32,7 @@ fn printed(rows: &rows::Table) -> Table {
     table.set_header(rows.headings);
     for row in &rows.rows {
         table.add_row(row.iter().map(|cell| match &cell.interval {
-            Some(interval) => format!("{} ({interval})", cell.text),
+            Some(interval) => format!("{}\n{interval}", cell.text),
             None => cell.text.clone(),
         }));
     }

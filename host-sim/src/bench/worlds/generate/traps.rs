@@ -1,8 +1,8 @@
-//! Where going straight ends: a U to back out of, and a room without a door.
+//! Where going straight ends: a U to back out of, a room without a door, and a corridor closed at both ends.
 
 use super::{Options, arena, between};
 use crate::bench::arena::Arena;
-use crate::bench::worlds::wall::walls;
+use crate::bench::worlds::wall::{RADIUS, walls};
 use rand_pcg::Pcg64Mcg;
 
 /// A U between start and goal, open towards the start.
@@ -30,6 +30,24 @@ pub fn sealed(rng: &mut Pcg64Mcg, options: &Options) -> Arena {
         [right, front],
         [-left, front],
         [-left, -back],
+    ]);
+    let mut arena = arena(circles, [0.0, 0.0], [0.0, 8.0], options.radius);
+    arena.sealed = true;
+    arena
+}
+
+/// A corridor around the start that is closed at both ends, from a hand wider than the robot to twice as wide as what it can turn in;
+/// the goal is outside.
+pub fn closed(rng: &mut Pcg64Mcg, options: &Options) -> Arena {
+    let half = RADIUS + options.radius * between(rng, 0.7, 2.0);
+    let back = RADIUS + options.radius + between(rng, 0.0, 1.5);
+    let front = RADIUS + options.radius + between(rng, 0.2, 3.5);
+    let circles = walls(&[
+        [-half, -back],
+        [half, -back],
+        [half, front],
+        [-half, front],
+        [-half, -back],
     ]);
     let mut arena = arena(circles, [0.0, 0.0], [0.0, 8.0], options.radius);
     arena.sealed = true;
