@@ -26,6 +26,8 @@ mod field;
 mod footprint;
 mod heading;
 mod health;
+mod known;
+mod mark;
 mod memory;
 mod near;
 mod params;
@@ -115,6 +117,7 @@ pub struct Navigator<const N: usize> {
     way: Trajectory,
     escape: escape::Escape,
     way_back: way_back::WayBack,
+    ground: known::KnownGround,
     /// The last command, and the one before.
     last: Twist,
     before: Twist,
@@ -158,6 +161,7 @@ impl<const N: usize> Navigator<N> {
             way: Trajectory::new(),
             escape: escape::Escape::new(),
             way_back: way_back::WayBack::new(),
+            ground: known::KnownGround::new(),
             last: Twist::REST,
             before: Twist::REST,
             chosen: Angle::ZERO,
@@ -232,6 +236,7 @@ impl<const N: usize> Navigator<N> {
         }
         probe.mark(Stage::Remember);
         self.way_back.follow(pose, self.last.linear);
+        self.ground.follow(pose);
         // What is decided now acts after the latency; until then the last command does.
         let moved = Motion::of(setup.brakes.mean(self.before, self.last), p.latency);
         let ahead = moved.from(pose);
@@ -439,7 +444,13 @@ impl<const N: usize> Navigator<N> {
                     &self.map,
                     &p.barrier,
                     course.direction,
-                    || self.way_back.retreat(ahead),
+                    &escape::Behind {
+                        pose: ahead,
+                        way_back: &self.way_back,
+                        ground: &self.ground,
+                        eyes: &setup.eyes,
+                        dead: self.health.dead(),
+                    },
                 )
             }
             (Manoeuvre::Blocked | Manoeuvre::Arrived, ..) => Twist::REST,

@@ -88,7 +88,7 @@ pub struct Memory {
     origin: Point,
     tick: u32,
     /// The point that was last looked at for its place.
-    looked: usize,
+    looked: u8,
     /// Points that were a little behind their sensor's echo in the last update.
     behind: Vec<u8, BEHIND>,
     /// Points that were looked at in the last update.
@@ -158,7 +158,7 @@ impl Memory {
         }
         digest.point(self.origin);
         digest.word(self.tick);
-        digest.word(self.looked as u32);
+        digest.word(self.looked.into());
     }
 
     /// The points up to `look` ahead of a body that has moved by `moved` since the last update, in its frame: those in the
@@ -365,13 +365,17 @@ impl Memory {
         let away = |record: &Record| (record.at() - self.body).norm_squared();
         let mut farthest = (away(&record), None);
         for _ in 0..LOOKED {
-            self.looked = self.looked.wrapping_add(1) % CAPACITY;
-            let known = self.records.get(self.looked).map_or(0, away);
+            self.looked = self.looked.wrapping_add(1) % CAPACITY as u8;
+            let known = self.records.get(usize::from(self.looked));
+            let known = known.map_or(0, away);
             if known > farthest.0 {
                 farthest = (known, Some(self.looked));
             }
         }
-        if let Some(place) = farthest.1.and_then(|index| self.records.get_mut(index)) {
+        if let Some(place) = farthest
+            .1
+            .and_then(|index| self.records.get_mut(usize::from(index)))
+        {
             *place = record;
         }
     }

@@ -54,7 +54,7 @@ pub struct NavigatorParams<const N: usize> {
     pub barrier: BarrierParams,
 }
 
-/// [Checked](NavigatorParams::setup) settings, made ready. Nothing in it changes while the robot drives: it may lie in flash.
+/// [Checked](NavigatorParams::setup) settings, made ready when the program starts; nothing in it changes while the robot drives.
 #[derive(Clone, Debug)]
 pub struct Setup<const N: usize> {
     pub(super) params: NavigatorParams<N>,

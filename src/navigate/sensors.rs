@@ -285,6 +285,25 @@ impl<const N: usize> Eyes<N> {
         &self.eyes
     }
 
+    /// Whether a place, body frame, is in a sensor's view; those with a bit in `dead` see nothing. Where all share a place the
+    /// one whose axis is nearest to the place's direction is asked, and its neighbours.
+    pub(super) fn see(&self, dead: u32, place: Vector) -> bool {
+        let (first, last) = match self.eyes.first().filter(|_| self.shared) {
+            Some(eye) => {
+                let sector = ((place - eye.at).direction().bits().cast_unsigned() >> 26) as usize;
+                let nearest = usize::from(self.nearest.get(sector).copied().unwrap_or(0));
+                (nearest.saturating_sub(1), nearest.wrapping_add(2))
+            }
+            None => (0, N),
+        };
+        (first..last).any(|index| {
+            self.eyes.get(index).is_some_and(|eye| {
+                dead.wrapping_shr(index as u32) & 1 == 0
+                    && eye.view(place - eye.at).0 != View::Outside
+            })
+        })
+    }
+
     /// Tells which sensors see a place, body frame: calls `see` with the index of each, where the place lies as seen from it,
     /// and how, until it answers `false`; answers what was answered last, else `true`. Where all share a place the search
     /// begins at `hint`, the one that saw it last time, goes to the neighbour on the place's side, [`ASKED`] sensors in all, and
@@ -489,6 +508,9 @@ mod tests {
                             true
                         });
                     }
+                    assert_eq!(eyes.see(0, place), !seen.is_empty(), "{number}: {x}, {y}");
+                    let all = seen.iter().fold(0, |bits, index| bits | 1 << index);
+                    assert!(!eyes.see(all, place), "{number}: {x}, {y}");
                     asked.sort_unstable();
                     if *disjoint {
                         // At an edge two may see it: one is asked.

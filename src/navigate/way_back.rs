@@ -1,12 +1,13 @@
 //! The way that the body came: where it has driven nothing stands, unless it moves, so it is the surest way out.
 
 use super::footprint::Outline;
+use super::mark::Mark;
 use super::near::Near;
-use super::steps::{Steps, Vector};
+use super::steps::{Bearing, Steps};
 use super::trajectory::Trajectory;
-use crate::geometry::{Point, Pose};
+use crate::geometry::Pose;
 use crate::integer::{quotient, saturate};
-use crate::units::{Metres, MetresPerSecond, PerMetre};
+use crate::units::{MetresPerSecond, PerMetre};
 
 /// The most places: 0.8 m.
 const PLACES: usize = 16;
@@ -14,7 +15,7 @@ const PLACES: usize = 16;
 /// Places of the middle of the body on its way, the newest last; the oldest are forgotten.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayBack {
-    places: [Point; PLACES],
+    places: [Mark; PLACES],
     /// Index of the newest.
     newest: u8,
     known: u8,
@@ -44,7 +45,7 @@ impl WayBack {
     /// Nowhere yet.
     pub const fn new() -> Self {
         Self {
-            places: [Point::new(Metres::ZERO, Metres::ZERO); PLACES],
+            places: [Mark::ORIGIN; PLACES],
             newest: 0,
             known: 0,
         }
@@ -57,46 +58,43 @@ impl WayBack {
         /// A place that is hardly behind the middle any more is reached.
         const REACHED: Steps = Steps::lit("-0.03");
         if driven < MetresPerSecond::ZERO {
+            let (at, forward) = (Mark::of(pose.at), Bearing::of(pose.heading));
             while let Some(last) = self.place(0)
-                && Vector::of(pose.to_body(last)).x >= REACHED
+                && at.to(last).in_frame(forward).x >= REACHED
             {
                 self.newest = self.index(1);
                 self.known = self.known.wrapping_sub(1);
             }
             return;
         }
-        let noted = self.place(0).is_some_and(|last| {
-            Vector::of(last - pose.at).norm_squared() <= const { SPACING.squared() }
-        });
+        let at = Mark::of(pose.at);
+        let noted = self
+            .place(0)
+            .is_some_and(|last| at.to(last).norm_squared() <= const { SPACING.squared() });
         if noted {
             return;
         }
         // The next one is the oldest of all.
         self.newest = self.index(PLACES as u8 - 1);
         if let Some(next) = self.places.get_mut(usize::from(self.newest)) {
-            *next = pose.at;
+            *next = at;
         }
         self.known = self.known.saturating_add(1).min(PLACES as u8);
     }
 
-    /// The arc to the first place of the way that is 0.22 m away or more, or to its beginning if that is nearer. None if the
-    /// place is farther away than 0.5 m, not behind the robot, or so far aside that the arc would be tighter than 1/3 m.
+    /// The arc to the first place of the way that is 0.22 m away or more: less is driven before the next choice takes effect.
+    /// None if there is none, if it is farther away than 0.5 m, not behind the robot, or so far aside that the arc would be
+    /// tighter than 1/3 m.
     pub fn retreat(&self, pose: Pose) -> Option<Retreat> {
         const FAR_ENOUGH: Steps = Steps::lit("0.22");
         const TOO_FAR: Steps = Steps::lit("0.5");
         const BEHIND: Steps = Steps::lit("-0.05");
         const TIGHTEST: PerMetre = PerMetre::lit("3");
-        let place = (0..self.known)
+        let (at, forward) = (Mark::of(pose.at), Bearing::of(pose.heading));
+        let mut places = (0..self.known)
             .filter_map(|back| self.place(back))
-            .map(|place| Vector::of(pose.to_body(place)));
-        let mut chosen = None;
-        for place in place {
-            chosen = Some(place);
-            if place.norm_squared() >= const { FAR_ENOUGH.squared() } {
-                break;
-            }
-        }
-        let place = chosen?;
+            .map(|place| at.to(place).in_frame(forward));
+        let place = places.find(|place| place.norm_squared() >= const { FAR_ENOUGH.squared() })?;
         let squared = place.norm_squared();
         if squared > const { TOO_FAR.squared() } || place.x > BEHIND {
             return None;
@@ -112,7 +110,7 @@ impl WayBack {
     }
 
     /// The place so many before the newest.
-    fn place(&self, back: u8) -> Option<Point> {
+    fn place(&self, back: u8) -> Option<Mark> {
         let index = (back < self.known).then(|| self.index(back))?;
         self.places.get(usize::from(index)).copied()
     }
@@ -174,8 +172,8 @@ mod tests {
             let here = at(10 * x, 0, Angle::ZERO);
             way.follow(here, -SPEED);
             match way.retreat(here) {
-                Some(back) => assert!(x >= 5 && back.curvature == PerMetre::ZERO, "{x}: {back:?}"),
-                None => assert!(x <= 6, "{x}"),
+                Some(back) => assert!(x >= 22 && back.curvature == PerMetre::ZERO, "{x}: {back:?}"),
+                None => assert!(x <= 26, "{x}"),
             }
         }
     }

@@ -72,6 +72,19 @@ fn a_pocket_is_left_the_way_it_was_entered() {
     assert_eq!(number(&results, "success"), 1.0, "{results}");
 }
 
+/// Nothing is seen behind: who backs where he never looked touches the wall in a fifth of these.
+#[test]
+fn who_is_shut_in_says_so() {
+    for (kind, most) in [("sealed", 0.0), ("closed", 0.08)] {
+        let place = format!("generated:{kind}");
+        let results = ours(&["--worlds", &place, "--numbers", "0-79", "--task", "goal"]);
+        let [touched, blocked] = ["collision", "blocked"].map(|name| number(&results, name));
+        assert!(touched <= most, "{kind}: {touched}");
+        assert!(blocked >= 0.97 - most, "{kind}: {blocked}");
+        assert_eq!(number(&results, "stalls"), 0.0, "{kind}");
+    }
+}
+
 #[test]
 fn routes_are_kept_to() {
     let results = ours(&["--worlds", "generated:routes", "--task", "path"]);

@@ -133,7 +133,8 @@ macro_rules! knob {
 pub static KNOBS: [Knob; 43] = [
     knob!(metres memory.insert, 0.6 to 2.6),
     knob!(number memory.arc, 0.2 to 1.0),
-    knob!(metres memory.disproof, 0.01 to 0.15),
+    // Nearer than two deviations of its noise an echo disproves what is true.
+    knob!(metres memory.disproof, 0.02 to 0.15),
     knob!(metres memory.support, 0.03 to 0.1),
     knob!(metres memory.nearer, 0.005 to 0.06),
     knob!(metres map.look, 1.0 to 1.8),

@@ -36,8 +36,7 @@ pub fn sealed(rng: &mut Pcg64Mcg, options: &Options) -> Arena {
     arena
 }
 
-/// A corridor around the start that is closed at both ends, from a hand wider than the robot to twice as wide as what it can turn in;
-/// the goal is outside.
+/// A corridor around the start that is closed at both ends, 0.7 to 2 radii free to either side; the goal is outside.
 pub fn closed(rng: &mut Pcg64Mcg, options: &Options) -> Arena {
     let half = RADIUS + options.radius * between(rng, 0.7, 2.0);
     let back = RADIUS + options.radius + between(rng, 0.0, 1.5);
