@@ -61,7 +61,8 @@ impl<const N: usize> Behind<'_, N> {
 
     /// Whether the ground is known that a motion leads to by the time when another one is chosen.
     fn is_known(&self, outline: &Outline, twist: Twist) -> bool {
-        /// 16 periods of 50 ms, 0.22 m: longer than a choice is kept and the next one thought about.
+        /// 16 periods of 50 ms, 0.22 m: longer than a choice is kept and the next one thought about. With longer periods a
+        /// choice may lead farther than was asked about.
         const AHEAD: Seconds = Seconds::lit("0.8");
         let there = Motion::of(twist, AHEAD).from(self.pose);
         self.ground.has_rear(self.eyes, self.dead, outline, there)
