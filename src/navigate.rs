@@ -276,8 +276,8 @@ impl<const N: usize> Navigator<N> {
             &supervisor::Situation {
                 path_free: course.free,
                 path_clear: course.clear,
-                admissible: (follows || heading.is_some())
-                    && !self.must_back_out(p, pose.at, &course),
+                admissible: follows || heading.is_some(),
+                back_out: !follows && self.must_back_out(p, pose.at, &course, heading.as_ref()),
                 last: self.last,
                 at: pose.at,
                 to_go: course.to_go,
@@ -395,13 +395,26 @@ impl<const N: usize> Navigator<N> {
         course
     }
 
-    /// Whether the robot came to nothing here before, the way leads back, and there is no room to turn into it: every
-    /// heading ahead would lead on into the dead end.
-    fn must_back_out(&self, p: &NavigatorParams<N>, at: Point, course: &Course) -> bool {
+    /// Whether the way leads back, there is no room to turn into it, and ahead is a dead end: the robot came to nothing here
+    /// before, is on its way out already, or the best heading is soon closed.
+    fn must_back_out(
+        &self,
+        p: &NavigatorParams<N>,
+        at: Point,
+        course: &Course,
+        heading: Option<&Heading>,
+    ) -> bool {
         const BACK: Angle = Angle::deg("110");
+        /// A body's length and a half.
+        const SOON: Steps = Steps::lit("0.8");
+        let escapes = self.supervisor.escapes();
+        let dead_end = || {
+            self.supervisor.stalled_near(&p.supervisor, at)
+                || heading.is_some_and(|heading| escapes || heading.hard < SOON)
+        };
         course.guided
-            && self.supervisor.stalled_near(&p.supervisor, at)
             && course.direction.abs().bits() > BACK.bits()
+            && dead_end()
             && !self.map.can_turn(course.direction)
             && !self.map.can_turn(-course.direction)
     }

@@ -308,6 +308,20 @@ fn a_dead_end_is_left_the_way_that_it_came() {
     assert!(farthest < 0.02, "{farthest}");
 }
 
+/// Lanes that end, hardly wider than the robot: as soon as their end is seen the way leads back, and there is no room to turn.
+#[test]
+fn a_lane_that_ends_is_backed_out_of() {
+    let goal = [6.0, 0.0];
+    for wide in [0.6, 0.65, 0.7] {
+        let aside = wide / 2.0 + 0.05;
+        let corners = [[0.4, 1.6], [1.2, aside], [3.2, aside]];
+        let mirrored = corners.iter().rev().map(|[x, y]| [*x, -y]);
+        let corners: Vec<_> = corners.into_iter().chain(mirrored).collect();
+        let run = to_goal(presets::jackal::<16>(), &walls(&corners), goal);
+        arrived(&run, goal);
+    }
+}
+
 #[test]
 fn in_a_sealed_room_it_says_that_it_is_blocked() {
     let room = walls(&[

@@ -149,7 +149,7 @@ pub fn choose(
 /// near, or where whether there is a heading matters more than which.
 const ENOUGH: u32 = 16;
 /// About so many looks at points are left to all sectors together…
-const LOOKS: u32 = 600;
+const LOOKS: u32 = 450;
 /// …less so many for every point that the memory has judged.
 const JUDGED: u32 = 2;
 const BRIEFLY: u32 = 5;

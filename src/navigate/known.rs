@@ -7,7 +7,7 @@ use super::steps::{Bearing, Steps, Vector};
 use crate::geometry::Pose;
 use crate::units::Angle;
 
-/// The most poses: 1.6 m of way, or 240° of turning.
+/// The most poses: 1.6 m of way, or 240° of turning; to and fro counts once.
 const POSES: usize = 8;
 
 /// A pose from which it looked around.
@@ -46,11 +46,11 @@ impl KnownGround {
         const APART: Steps = Steps::lit("0.2");
         const TURNED: Angle = Angle::deg("30");
         let at = Mark::of(pose.at);
-        let same = self.newest_first().next().is_some_and(|last| {
-            at.to(last.at).norm_squared() <= const { APART.squared() }
-                && (pose.heading - last.heading).abs().bits() <= TURNED.bits()
+        let stood = self.newest_first().any(|stand| {
+            at.to(stand.at).norm_squared() <= const { APART.squared() }
+                && (pose.heading - stand.heading).abs().bits() <= TURNED.bits()
         });
-        if same {
+        if stood {
             return;
         }
         self.newest = self.newest.wrapping_add(1) % POSES as u8;
@@ -162,6 +162,16 @@ mod tests {
             let known = known_behind(&ground, x);
             assert!((x - 1..=x).contains(&known), "{x}: {known}");
         }
+    }
+
+    #[test]
+    fn who_goes_to_and_fro_does_not_forget_where_he_began() {
+        let mut ground = KnownGround::new();
+        for x in (0..=100).chain((0..10).flat_map(|_| (50..100).rev().chain(50..100))) {
+            ground.follow(at(x, Angle::ZERO));
+        }
+        let known = known_behind(&ground, 99);
+        assert!((98..=99).contains(&known), "{known}");
     }
 
     #[test]

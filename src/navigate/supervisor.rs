@@ -55,12 +55,12 @@ pub struct SupervisorParams {
     pub still: u16,
     /// Way after which an escape may end…
     pub escape: Metres,
-    /// …and ticks after which it does.
+    /// …and ticks after which it does; three times as many where the way leads back and there is no room to turn.
     pub escape_ticks: u16,
     /// Who stays this near to where he was…
     pub progress: Metres,
-    /// …for this many ticks makes no progress: it stops, says so, and forgets doubtful points. Places are noted nine times
-    /// in that time, so it may take a ninth longer.
+    /// …for this many ticks makes no progress: it stops, says so, and, every fourth time at one place, forgets doubtful
+    /// points. Places are noted nine times in that time, so it may take a ninth longer.
     pub patience: u16,
     /// Ticks of standing before it tries again.
     pub pause: u16,
@@ -81,6 +81,8 @@ pub(super) struct Situation {
     pub path_clear: bool,
     /// There is an admissible heading.
     pub admissible: bool,
+    /// The way leads back, and there is no room to turn into it.
+    pub back_out: bool,
     /// The last command.
     pub last: Twist,
     /// Where the robot is.
@@ -96,11 +98,18 @@ pub(super) struct Situation {
 pub(super) struct Decided {
     /// What to do.
     pub manoeuvre: Manoeuvre,
-    /// Doubtful points are to be forgotten: the robot made no progress.
+    /// Doubtful points are to be forgotten: the robot has made no progress here for several times.
     pub forget: bool,
     /// The way that was tried is to be shunned: it led nowhere.
     pub shun: bool,
 }
+
+/// Of so many stalls at one place the last but one makes it forget: what it knows is what leads it out of a dead end, so it
+/// is given up only if that does not help.
+const FORGET: u8 = 4;
+
+/// So many times as long may an escape take that backs out of a dead end.
+const BACK_OUT: u16 = 3;
 
 /// Places noted in a row.
 const NOTED: usize = 9;
@@ -210,12 +219,12 @@ impl State {
         if self.manoeuvre == Manoeuvre::Blocked {
             self.trail = Trail::NONE;
         }
-        let forget = self.watch(params, now);
+        let stalled = self.watch(params, now);
         // Who brakes past the goal has still arrived.
         let stays = self.manoeuvre == Manoeuvre::Arrived && now.to_go < params.progress;
         let next = if now.at_goal || stays {
             Manoeuvre::Arrived
-        } else if forget || self.since_least >= params.give_up {
+        } else if stalled || self.since_least >= params.give_up {
             Manoeuvre::Blocked
         } else {
             self.next(params, now)
@@ -231,14 +240,15 @@ impl State {
         self.dwelt = self.dwelt.saturating_add(1);
         Decided {
             manoeuvre: next,
-            forget,
-            shun: forget || (begins && next == Manoeuvre::Escape),
+            forget: stalled && self.strikes % FORGET == FORGET - 1,
+            shun: stalled || (begins && next == Manoeuvre::Escape),
         }
     }
 
     fn next(&mut self, params: &SupervisorParams, now: &Situation) -> Manoeuvre {
         let count = |ticks: u16, on: bool| if on { ticks.saturating_add(1) } else { 0 };
-        self.stuck = count(self.stuck, !now.admissible);
+        let admissible = now.admissible && !now.back_out;
+        self.stuck = count(self.stuck, !admissible);
         self.still = count(self.still, stands(now.last));
         let moved = |from: Point, by: Metres| (now.at - from).norm_squared() > square(by);
         match self.manoeuvre {
@@ -248,13 +258,15 @@ impl State {
             }
             Manoeuvre::Avoid if now.path_clear && self.dwelt >= params.dwell => Manoeuvre::Follow,
             Manoeuvre::Escape => {
-                let out = now.admissible && moved(self.from, params.escape);
-                if out || self.dwelt >= params.escape_ticks {
+                let out = admissible && moved(self.from, params.escape);
+                let times = if now.back_out { BACK_OUT } else { 1 };
+                if out || self.dwelt >= params.escape_ticks.saturating_mul(times) {
                     Manoeuvre::Avoid
                 } else {
                     Manoeuvre::Escape
                 }
             }
+            Manoeuvre::Blocked if now.back_out => Manoeuvre::Escape,
             _ => Manoeuvre::Avoid,
         }
     }
@@ -289,4 +301,118 @@ fn stands(twist: Twist) -> bool {
     const SLOW: MetresPerSecond = MetresPerSecond::lit("0.04");
     const TURN: RadiansPerSecond = RadiansPerSecond::lit("0.15");
     twist.linear.abs() < SLOW && twist.angular.abs() < TURN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FORGET, Manoeuvre, Situation, State, SupervisorParams};
+    use crate::geometry::Point;
+    use crate::navigate::presets;
+    use crate::signals::Twist;
+    use crate::units::{Metres, MetresPerSecond, RadiansPerSecond};
+    use heapless::Vec;
+
+    fn params() -> SupervisorParams {
+        presets::jackal::<16>().supervisor
+    }
+
+    /// Turns on the spot, far from the goal.
+    fn here() -> Situation {
+        Situation {
+            path_free: false,
+            path_clear: false,
+            admissible: true,
+            back_out: false,
+            last: Twist {
+                linear: MetresPerSecond::ZERO,
+                angular: RadiansPerSecond::lit("1"),
+            },
+            at: Point::new(Metres::ZERO, Metres::ZERO),
+            to_go: Metres::lit("9"),
+            at_goal: false,
+        }
+    }
+
+    #[test]
+    fn every_fourth_stall_at_a_place_makes_it_forget() {
+        let params = SupervisorParams {
+            give_up: u16::MAX,
+            ..params()
+        };
+        let mut state = State::new();
+        let (mut stalls, mut forgot, mut ticks) = (0, Vec::<u8, 4>::new(), 0u32);
+        while stalls < 9 {
+            ticks += 1;
+            assert!(ticks < 1200, "{stalls}");
+            let decided = state.decide(&params, &here());
+            // While it avoids only a stall makes it shun a way.
+            stalls += u8::from(decided.shun);
+            if decided.forget {
+                assert_eq!(decided.manoeuvre, Manoeuvre::Blocked);
+                forgot.push(stalls).unwrap();
+            }
+        }
+        assert_eq!(forgot, [FORGET - 1, 2 * FORGET - 1]);
+    }
+
+    /// The manoeuvres of so many ticks, each with how long it lasted.
+    fn lasted(now: &Situation, ticks: u32) -> Vec<(Manoeuvre, u16), 64> {
+        let (params, mut state) = (params(), State::new());
+        let mut all = Vec::<(Manoeuvre, u16), 64>::new();
+        for _ in 0..ticks {
+            let manoeuvre = state.decide(&params, now).manoeuvre;
+            match all.last_mut() {
+                Some((last, ticks)) if *last == manoeuvre => *ticks += 1,
+                _ => all.push((manoeuvre, 1)).unwrap(),
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn who_must_back_out_escapes_for_longer_and_again_at_once() {
+        let params = SupervisorParams {
+            patience: u16::MAX,
+            ..params()
+        };
+        let escape = |back_out: bool| {
+            let now = Situation {
+                admissible: back_out,
+                back_out,
+                ..here()
+            };
+            let mut state = State::new();
+            let ticks = (0..400).map(|_| state.decide(&params, &now).manoeuvre);
+            ticks
+                .skip_while(|manoeuvre| *manoeuvre != Manoeuvre::Escape)
+                .take_while(|manoeuvre| *manoeuvre == Manoeuvre::Escape)
+                .count()
+        };
+        assert_eq!(escape(false), usize::from(params.escape_ticks));
+        assert_eq!(escape(true), 3 * usize::from(params.escape_ticks));
+
+        let after_a_pause = |back_out: bool| {
+            let all = lasted(&Situation { back_out, ..here() }, 200);
+            let pause = all
+                .iter()
+                .position(|(manoeuvre, _)| *manoeuvre == Manoeuvre::Blocked);
+            all[pause.unwrap() + 1].0
+        };
+        assert_eq!(after_a_pause(true), Manoeuvre::Escape);
+        assert_eq!(after_a_pause(false), Manoeuvre::Avoid);
+    }
+
+    #[test]
+    fn a_heading_is_none_to_who_must_back_out() {
+        let now = Situation {
+            back_out: true,
+            ..here()
+        };
+        assert_eq!(
+            lasted(&now, 20)[0],
+            (Manoeuvre::Avoid, params().stuck - 1),
+            "escapes as soon as no heading was admissible for so long"
+        );
+        assert_eq!(lasted(&here(), 20), [(Manoeuvre::Avoid, 20)]);
+    }
 }

@@ -9,7 +9,7 @@ use crate::geometry::Pose;
 use crate::integer::{quotient, saturate};
 use crate::units::{MetresPerSecond, PerMetre};
 
-/// The most places: 0.8 m.
+/// The most places: 2.4 m.
 const PLACES: usize = 16;
 
 /// Places of the middle of the body on its way, the newest last; the oldest are forgotten.
@@ -54,7 +54,7 @@ impl WayBack {
     /// Notes a tick's place while the robot drives forward or turns; while it drives backward it forgets those that it has
     /// come back to.
     pub fn follow(&mut self, pose: Pose, driven: MetresPerSecond) {
-        const SPACING: Steps = Steps::lit("0.05");
+        const SPACING: Steps = Steps::lit("0.15");
         /// A place that is hardly behind the middle any more is reached.
         const REACHED: Steps = Steps::lit("-0.03");
         if driven < MetresPerSecond::ZERO {
@@ -162,7 +162,7 @@ mod tests {
         let back = way.retreat(last).unwrap();
         let off = back.curvature - PerMetre::lit("1");
         assert!(off.abs() < PerMetre::lit("0.02"), "{back:?}");
-        assert!(back.distance >= Steps::lit("0.22") && back.distance < Steps::lit("0.28"));
+        assert!(back.distance >= Steps::lit("0.22") && back.distance < Steps::lit("0.38"));
     }
 
     #[test]
@@ -173,7 +173,7 @@ mod tests {
             way.follow(here, -SPEED);
             match way.retreat(here) {
                 Some(back) => assert!(x >= 22 && back.curvature == PerMetre::ZERO, "{x}: {back:?}"),
-                None => assert!(x <= 26, "{x}"),
+                None => assert!(x <= 36, "{x}"),
             }
         }
     }
