@@ -395,8 +395,8 @@ impl<const N: usize> Navigator<N> {
         course
     }
 
-    /// Whether the way leads back, there is no room to turn into it, and ahead is a dead end: the robot came to nothing here
-    /// before, is on its way out already, or the best heading is soon closed.
+    /// Whether the robot must back out: the way leads back, there is no room to turn into it, and ahead is a dead end, as it
+    /// made no progress here before, or its best heading is soon closed; while it escapes already any heading counts as such.
     fn must_back_out(
         &self,
         p: &NavigatorParams<N>,
@@ -405,7 +405,7 @@ impl<const N: usize> Navigator<N> {
         heading: Option<&Heading>,
     ) -> bool {
         const BACK: Angle = Angle::deg("110");
-        /// A body's length and a half.
+        /// One and a half lengths of the presets' body, whatever the body. What lies beyond the map's look is not seen free.
         const SOON: Steps = Steps::lit("0.8");
         let escapes = self.supervisor.escapes();
         let dead_end = || {

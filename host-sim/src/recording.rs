@@ -79,7 +79,7 @@ pub struct NavigatorView {
     pub slowed: bool,
     /// Whether the brake gate changed it.
     pub gated: bool,
-    /// Whether not even braking in full stays clear.
+    /// Whether no twist was found that stays clear.
     pub trapped: bool,
     /// Sensors that it takes for dead.
     pub dead: Vec<usize>,

@@ -79,7 +79,8 @@ pub struct Guarded {
     pub slowed: bool,
     /// The brake gate changed it.
     pub gated: bool,
-    /// Not even braking in full stays clear, as a point was seen too late; or that was not asked, as so much was near.
+    /// No twist was found that stays clear, and it brakes in full: not even that does, as a point was seen too late, or it was
+    /// not asked, as the gate had looked at so many points.
     pub trapped: bool,
     /// How often a point was looked at from a place on the way.
     pub looked: u32,

@@ -1,4 +1,4 @@
-//! Out of a place where no heading is admissible: back the way that it came, or the best of six short arcs, three of them
+//! Out of a place where no heading is admissible, or only what leads into a dead end: back the way that it came, or the best of six short arcs, three of them
 //! backward, or a turn in place.
 
 use super::barrier::BarrierParams;

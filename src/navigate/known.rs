@@ -7,7 +7,7 @@ use super::steps::{Bearing, Steps, Vector};
 use crate::geometry::Pose;
 use crate::units::Angle;
 
-/// The most poses: 1.6 m of way, or 240° of turning; to and fro counts once.
+/// The most poses: 1.6 m of way, or 240° of turning; a pose near a known one is not noted again.
 const POSES: usize = 8;
 
 /// A pose from which it looked around.
@@ -17,7 +17,7 @@ struct Stand {
     heading: Angle,
 }
 
-/// The last poses, some way or turn apart.
+/// The last poses, some way or turn apart, in the order in which they were first stood at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KnownGround {
     stands: [Stand; POSES],

@@ -19,6 +19,9 @@ use crate::units::{Metres, MetresPerSecond, RadiansPerSecond, Seconds};
 ///   │ Arrived │                           └─────────┘
 ///   └─────────┘
 /// ```
+///
+/// Without progress every manoeuvre but Arrived ends in Blocked. After its pause that goes on to Avoid, or at once to Escape
+/// where the robot must back out of a dead end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Manoeuvre {
@@ -27,7 +30,7 @@ pub enum Manoeuvre {
     /// Among obstacles, by map, guide field and coarse tables.
     #[default]
     Avoid,
-    /// Out of a place where nothing is admissible: back the way that it came, along another short arc, or turning.
+    /// Out of a place where nothing is admissible, or only what leads on into a dead end: back the way that it came, along another short arc, or turning.
     Escape,
     /// Stands and says so: there is no way on. For a pause at first, then it tries again; in the end for good, until
     /// [`Navigator::resume`](super::Navigator::resume).
@@ -49,18 +52,18 @@ pub struct SupervisorParams {
     pub leave: Metres,
     /// Least ticks of avoiding.
     pub dwell: u16,
-    /// Ticks without an admissible heading before an escape.
+    /// Ticks without an admissible heading, or with none but into a dead end, before an escape.
     pub stuck: u16,
     /// Ticks of standing before an escape.
     pub still: u16,
     /// Way after which an escape may end…
     pub escape: Metres,
-    /// …and ticks after which it does; three times as many where the way leads back and there is no room to turn.
+    /// …and ticks after which it does; three times as many while it must back out of a dead end.
     pub escape_ticks: u16,
     /// Who stays this near to where he was…
     pub progress: Metres,
-    /// …for this many ticks makes no progress: it stops, says so, and, every fourth time at one place, forgets doubtful
-    /// points. Places are noted nine times in that time, so it may take a ninth longer.
+    /// …for this many ticks makes no progress: it stops, says so, and, the third time at one place and every fourth
+    /// after that, forgets doubtful points. Places are noted nine times in that time, so it may take a ninth longer.
     pub patience: u16,
     /// Ticks of standing before it tries again.
     pub pause: u16,
@@ -81,7 +84,7 @@ pub(super) struct Situation {
     pub path_clear: bool,
     /// There is an admissible heading.
     pub admissible: bool,
-    /// The way leads back, and there is no room to turn into it.
+    /// It must back out: the way leads back, there is no room to turn into it, and ahead is a dead end.
     pub back_out: bool,
     /// The last command.
     pub last: Twist,
@@ -98,14 +101,16 @@ pub(super) struct Situation {
 pub(super) struct Decided {
     /// What to do.
     pub manoeuvre: Manoeuvre,
-    /// Doubtful points are to be forgotten: the robot has made no progress here for several times.
+    /// Doubtful points are to be forgotten: the robot has made no progress here several times.
     pub forget: bool,
-    /// The way that was tried is to be shunned: it led nowhere.
+    /// The place in the direction wanted is to be shunned: going there led nowhere. Who must back out shuns a place on the way
+    /// back by that; shunning what lies ahead instead was no better.
     pub shun: bool,
 }
 
-/// Of so many stalls at one place the last but one makes it forget: what it knows is what leads it out of a dead end, so it
-/// is given up only if that does not help.
+/// The third stall at one place makes it forget, and every fourth after that: what it knows is what leads it out of a dead
+/// end, so it is given up only after others have failed. With fewer strikes than three it never forgets, nor who stalls at two
+/// places in turn.
 const FORGET: u8 = 4;
 
 /// So many times as long may an escape take that backs out of a dead end.

@@ -36,7 +36,7 @@ pub struct Summary {
     pub slowed: f64,
     /// Share in which the brake gate changed it.
     pub gated: f64,
-    /// Share in which not even full braking would stay clear of a known point.
+    /// Share in which no twist was found that stays clear of every known point.
     pub trapped: f64,
     /// Mean of the speed that was decided, m/s.
     pub mean_speed_mps: f64,

@@ -142,7 +142,7 @@ fn report(summary: &Summary) -> Table {
     }
     row("slowed by the barrier", per_cent(summary.slowed));
     row("changed by the brake gate", per_cent(summary.gated));
-    row("no twist would stay clear", per_cent(summary.trapped));
+    row("no twist found that stays clear", per_cent(summary.trapped));
     row(
         "mean speed decided",
         format!("{:.2} m/s", summary.mean_speed_mps),
