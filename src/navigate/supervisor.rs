@@ -30,7 +30,8 @@ pub enum Manoeuvre {
     /// Among obstacles, by map, guide field and coarse tables.
     #[default]
     Avoid,
-    /// Out of a place where nothing is admissible, or only what leads on into a dead end: back the way that it came, along another short arc, or turning.
+    /// Out of a place where nothing is admissible, or only what leads on into a dead end: back the way that it came, along
+    /// another short arc, or turning.
     Escape,
     /// Stands and says so: there is no way on. For a pause at first, then it tries again; in the end for good, until
     /// [`Navigator::resume`](super::Navigator::resume).
@@ -104,7 +105,7 @@ pub(super) struct Decided {
     /// Doubtful points are to be forgotten: the robot has made no progress here several times.
     pub forget: bool,
     /// The place in the direction wanted is to be shunned: going there led nowhere. Who must back out shuns a place on the way
-    /// back by that; shunning what lies ahead instead was no better.
+    /// back by that: fewer arrive where nothing or what lies ahead is shunned instead.
     pub shun: bool,
 }
 
